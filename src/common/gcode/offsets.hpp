@@ -1,0 +1,29 @@
+#pragma once
+// Coordinate data that outlives blocks: what `$#` prints and what non-volatile storage keeps.
+
+#include <array>
+#include <cstddef>
+
+#include "common/gcode/action.hpp"
+
+namespace kerf::gcode {
+
+inline constexpr std::size_t kMaxWorkOffsets = 9;
+
+/// All values in mm. Which of them survive a reset is the firmware's affair (protocol.md 1.2).
+struct Offsets {
+  /// G54 to G59, then grblHAL's G59.1 to G59.3.
+  std::array<AxisValues, kMaxWorkOffsets> work{};
+  AxisValues g28{};
+  AxisValues g30{};
+  AxisValues g92{};
+  /// Grbl and Rabbit use Z only.
+  AxisValues tool_length{};
+  /// Machine position of the last probe contact, and whether there was one.
+  AxisValues probe{};
+  bool probe_succeeded = false;
+
+  bool operator==(const Offsets&) const = default;
+};
+
+}  // namespace kerf::gcode

@@ -1,0 +1,104 @@
+#pragma once
+// The modal state of the interpreter: what stays in force from block to block.
+
+#include <cstdint>
+
+#include "common/gcode/action.hpp"
+#include "common/gcode/offsets.hpp"
+
+namespace kerf::gcode {
+
+enum class MotionMode : std::uint8_t {
+  Rapid,
+  Linear,
+  ClockwiseArc,
+  CounterclockwiseArc,
+  ProbeToward,
+  ProbeTowardNoError,
+  ProbeAway,
+  ProbeAwayNoError,
+  DrillChipBreak,   // G73
+  Drill,            // G81
+  DrillDwell,       // G82
+  DrillPeck,        // G83
+  BoreFeedOut,      // G85
+  BoreSpindleStop,  // G86
+  BoreDwell,        // G89
+  None,             // G80
+};
+
+enum class FeedMode : std::uint8_t { UnitsPerMinute, InverseTime, UnitsPerRevolution };
+enum class ToolLengthMode : std::uint8_t { None, FromTable, Dynamic, Additional };
+enum class RetractMode : std::uint8_t { Previous, RPosition };
+enum class ProgramFlow : std::uint8_t { Running, Paused, OptionalStop, CompletedM2, CompletedM30, CompletedM60 };
+
+struct Coolant {
+  bool flood = false;
+  bool mist = false;
+  bool operator==(const Coolant&) const = default;
+};
+
+/// M48 to M56 of grblHAL: false means "locked".
+struct OverridePermissions {
+  bool feed = true;
+  bool spindle = true;
+  bool feed_hold = true;
+  bool parking = true;
+  bool operator==(const OverridePermissions&) const = default;
+};
+
+/// What a canned cycle remembers while it is repeated by later blocks. Lengths in mm.
+struct CannedCycle {
+  AxisValues target_mm{};
+  float retract_position_mm = 0.0F;
+  float peck_mm = 0.0F;
+  float dwell_s = 0.0F;
+  float previous_position_mm = 0.0F;
+  bool operator==(const CannedCycle&) const = default;
+};
+
+/// The part of the state that a block's words may change before it is known to be valid.
+struct ModalState {
+  MotionMode motion = MotionMode::Rapid;
+  Plane plane = Plane::XY;
+  bool inches = false;
+  bool incremental = false;
+  FeedMode feed_mode = FeedMode::UnitsPerMinute;
+  /// 0 is G54.
+  std::uint8_t work_offset = 0;
+  ToolLengthMode tool_length = ToolLengthMode::None;
+  RetractMode retract = RetractMode::Previous;
+  bool diameter = false;
+  bool scaling = false;
+  SpindleDirection spindle = SpindleDirection::Off;
+  Coolant coolant;
+  OverridePermissions overrides;
+  bool operator==(const ModalState&) const = default;
+};
+
+struct ParserState {
+  ModalState modal;
+  /// mm/min, or 1/min in inverse time mode.
+  float feed_rate = 0.0F;
+  float spindle_rpm = 0.0F;
+  /// Present tool, as `T` of [GC:].
+  std::uint32_t tool = 0;
+  /// Tool that T selected for the next M6 (grblHAL).
+  std::uint32_t tool_pending = 0;
+  /// An M6 waits for the operator (grblHAL): motion answers error:40.
+  bool tool_change_pending = false;
+  std::int32_t line_number = 0;
+  /// Where the last block ends, machine coordinates.
+  AxisValues position_mm{};
+  /// Copy of the selected work offset: Grbl reads storage only when the selection changes.
+  AxisValues work_offset_mm{};
+  bool g92_active = false;
+  /// G51 centre and factors (grblHAL).
+  AxisValues scale_center_mm{};
+  AxisValues scale_factor{1, 1, 1, 1, 1, 1, 1, 1};
+  CannedCycle canned;
+
+  bool operator==(const ParserState&) const = default;
+};
+
+}  // namespace kerf::gcode
