@@ -1,0 +1,61 @@
+#pragma once
+// A controller that is not there: the firmware side of the wire as a value that is fed bytes and time.
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/vocabulary/axis.hpp"
+#include "common/vocabulary/machine_state.hpp"
+#include "firmware/personality.hpp"
+#include "firmware/stored_state.hpp"
+#include "firmware/workcell.hpp"
+
+namespace kerf::firmware {
+
+/// Answers, moves and fails as the firmware named by its personality. Bytes, workcell events and the time go in; an
+/// outbox and the next deadline come out. Instants never run backwards. The same inputs give the same bytes, however
+/// bytes are cut into calls.
+class VirtualController {
+ public:
+  /// `stored` is what an earlier life left behind; a default one is a memory fresh from the factory. Stored settings
+  /// that the firmware would refuse are dropped; `rejected_settings()` names them.
+  explicit VirtualController(const Personality& personality, StoredState stored = {});
+  ~VirtualController();
+  VirtualController(VirtualController&&) noexcept;
+  VirtualController& operator=(VirtualController&&) noexcept;
+
+  /// Applies power: start-up text, startup lines. Call it once, before anything else.
+  void power_on(Instant now);
+  /// Bytes arrive at the receiver. A realtime byte acts at once, everything else goes through the receive buffer.
+  void on_bytes(Instant now, std::string_view bytes);
+  /// Something happens to the machine.
+  void submit(Instant now, const WorkcellEvent& event);
+  /// Lets time pass up to `now`.
+  void advance_to(Instant now);
+  /// When this controller next does something by itself; `kNever` when idle.
+  [[nodiscard]] Instant next_deadline() const;
+  /// Everything that was sent since the last call, in order.
+  [[nodiscard]] std::string take_outbox();
+
+  /// Bytes that fit into the receive buffer without loss; a link with back-pressure (TCP) hands over no more than this.
+  [[nodiscard]] std::size_t receive_room() const;
+  [[nodiscard]] const StoredState& stored() const;
+  /// Increases whenever `stored()` changes, so that an owner knows when to save it.
+  [[nodiscard]] unsigned stored_revision() const;
+  /// Ids of stored settings that were dropped at construction.
+  [[nodiscard]] const std::vector<std::string>& rejected_settings() const;
+  [[nodiscard]] const Personality& personality() const;
+  [[nodiscard]] vocabulary::MachineState state() const;
+  /// Machine position in motor steps at the last instant that went in.
+  [[nodiscard]] vocabulary::AxisSteps position_steps() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace kerf::firmware

@@ -1,0 +1,90 @@
+#pragma once
+// The physical world around the machine: switches, buttons, door, probe and workpiece, as tests and the browser move
+// them.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "common/vocabulary/axis.hpp"
+
+namespace kerf::firmware {
+
+/// Inputs that are simply on or off. `ProbeDisconnected` is the plug of the probe pulled out (grblHAL `Pn:O`).
+enum class Input : std::uint8_t {
+  Probe,
+  ProbeDisconnected,
+  Door,
+  FeedHold,
+  CycleStart,
+  Reset,
+  EmergencyStop,
+};
+inline constexpr std::size_t kInputs = 7;
+
+/// Somebody pressed, released, opened or closed something. An input stays as set.
+struct InputChanged {
+  Input input;
+  bool active;
+};
+
+/// The limit switch of an axis (either end) is held down by hand, or let go.
+struct LimitHeld {
+  vocabulary::Axis axis;
+  bool active;
+};
+
+/// Moves the homing switch of an axis: it closes while the axis is `distance_mm` or more away, in its homing direction,
+/// from where the axis stood at power-on. Without a value the axis has no homing switch. By default it sits one axis
+/// travel away.
+struct HomingSwitchMoved {
+  vocabulary::Axis axis;
+  std::optional<double> distance_mm;
+};
+
+/// Moves the surface that the probe touches: the probe closes while Z is at or below `z_mm`, counted from where Z stood
+/// at power-on. Without a value (the default) there is nothing to touch.
+struct ProbeSurfaceMoved {
+  std::optional<double> z_mm;
+};
+
+using WorkcellEvent = std::variant<InputChanged, LimitHeld, HomingSwitchMoved, ProbeSurfaceMoved>;
+
+/// What a controller's inputs read. Positions are physical: motor steps since power-on, which no homing or reset
+/// redefines.
+class Workcell {
+ public:
+  /// What turns steps and settings into the place of the homing switches; read at every question, so it may change any
+  /// time.
+  struct Geometry {
+    std::size_t axes = 3;
+    vocabulary::AxisValues steps_per_mm{};
+    vocabulary::AxisValues travel_mm{};
+    vocabulary::AxisMask homing_negative = 0;  ///< axes that home towards minus (`$23`)
+  };
+
+  void apply(const WorkcellEvent& event);
+
+  [[nodiscard]] bool is_active(Input input) const { return inputs_[static_cast<std::size_t>(input)]; }
+  /// Axes whose limit input is active with the motors at `physical` steps.
+  [[nodiscard]] vocabulary::AxisMask limits_at(const vocabulary::AxisSteps& physical, const Geometry& geometry) const;
+  [[nodiscard]] bool probe_at(const vocabulary::AxisSteps& physical, const Geometry& geometry) const;
+  /// The physical step count of an axis at which its homing switch closes; none if it has no switch or is held by hand.
+  [[nodiscard]] std::optional<std::int32_t> homing_switch_step(std::size_t axis, const Geometry& geometry) const;
+  /// The physical Z step count at and below which the probe is closed by the surface.
+  [[nodiscard]] std::optional<std::int32_t> surface_step(const Geometry& geometry) const;
+
+ private:
+  struct HomingSwitch {
+    bool at_travel_end = true;
+    std::optional<double> distance_mm;
+  };
+
+  std::array<bool, kInputs> inputs_{};
+  vocabulary::AxisMask held_limits_ = 0;
+  std::array<HomingSwitch, vocabulary::kMaxAxes> homing_switches_{};
+  std::optional<double> surface_mm_;
+};
+
+}  // namespace kerf::firmware
