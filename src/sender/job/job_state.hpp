@@ -1,0 +1,81 @@
+#pragma once
+// The state of a job as observers see it.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <boost/describe.hpp>
+
+#include "sender/job/progress.hpp"
+
+namespace kerf::job {
+
+/// Phases of a job. Those from Finished on are final: nothing leaves them, and nothing restarts by itself.
+enum class JobPhase {
+  Running,
+  Holding,      ///< feed hold asked for, the machine still decelerates
+  Held,         ///< at rest in Hold:0, Door:0 or Tool; `ResumeJob` goes on
+  Draining,     ///< a line was refused: no more lines, answers and motion still to come
+  Stopping,     ///< hold, standstill, then reset
+  Finished,     ///< every line answered, motion ended, Idle seen
+  Refused,      ///< the controller refused a line
+  Alarmed,      ///< an alarm ended it
+  Interrupted,  ///< reset, pendant or link loss from outside
+  Stopped,      ///< the operator stopped or aborted it
+};
+BOOST_DESCRIBE_ENUM(JobPhase, Running, Holding, Held, Draining, Stopping, Finished, Refused, Alarmed, Interrupted,
+                    Stopped)
+
+[[nodiscard]] constexpr bool is_final(JobPhase phase) {
+  return phase >= JobPhase::Finished;
+}
+
+/// Why a job stands still.
+enum class HoldCause { None, FeedHold, Door, ToolChange };
+BOOST_DESCRIBE_ENUM(HoldCause, None, FeedHold, Door, ToolChange)
+
+/// A line that the controller refused.
+struct Refusal {
+  std::uint32_t file_line = 0;
+  std::string text;
+  int code = 0;
+  /// The code in words, the controller's own first.
+  std::string meaning;
+  bool operator==(const Refusal&) const = default;
+};
+BOOST_DESCRIBE_STRUCT(Refusal, (), (file_line, text, code, meaning))
+
+/// Lines sent whose fate matters after a refusal, an alarm or an interruption.
+struct Aftermath {
+  /// First file line that was certainly not executed; 0 when every line sent was answered well.
+  std::uint32_t first_line_not_executed = 0;
+  /// Lines after the refused one that the controller accepted and executed all the same (no error latch:
+  /// protocol.md 6.4).
+  std::uint32_t lines_executed_after_refusal = 0;
+  /// Lines answered with the latched error, or lost with the receive buffer.
+  std::uint32_t lines_not_executed = 0;
+  bool operator==(const Aftermath&) const = default;
+};
+BOOST_DESCRIBE_STRUCT(Aftermath, (), (first_line_not_executed, lines_executed_after_refusal, lines_not_executed))
+
+/// A job from start to its end.
+struct JobState {
+  std::string program;
+  JobPhase phase = JobPhase::Running;
+  HoldCause hold_cause = HoldCause::None;
+  Progress progress;
+  std::optional<Refusal> refusal;
+  std::optional<int> alarm_code;
+  Aftermath aftermath;
+  /// After an abort or an alarm in motion the position may be wrong.
+  bool position_suspect = false;
+  /// One sentence for a final phase: what happened.
+  std::string reason;
+  bool operator==(const JobState&) const = default;
+};
+BOOST_DESCRIBE_STRUCT(JobState, (),
+                      (program, phase, hold_cause, progress, refusal, alarm_code, aftermath, position_suspect, reason))
+
+}  // namespace kerf::job

@@ -1,0 +1,82 @@
+#pragma once
+// What an operator may ask of a session. Commands are imperatives; a command that cannot be obeyed comes back as
+// CommandRefused.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include <boost/describe.hpp>
+
+#include "sender/job/program.hpp"
+
+namespace kerf::session {
+
+/// Streams a program. Needs a machine that is identified, at rest in Idle or Check, and no job under way.
+struct StartJob {
+  std::shared_ptr<const job::Program> program;
+};
+
+/// Feed hold: decelerate and stand still, position kept. Works in every state.
+struct HoldJob {};
+
+/// Goes on after a hold, a program pause, a closed door or a tool change; refused while the machine still decelerates,
+/// because a cycle start in Hold:1 is lost (protocol.md 2).
+struct ResumeJob {};
+
+/// Hold, wait for standstill, then soft reset: position kept, no alarm. The same three steps on every firmware;
+/// grblHAL's 0x19 would do it in one, but only there.
+struct StopJob {};
+
+/// Soft reset now. Where the machine was moving, its position is suspect afterwards.
+struct AbortJob {};
+
+/// One line by hand, without line end. Refused when it holds bytes that a controller would take as realtime commands.
+struct SendLine {
+  std::string text;
+};
+
+/// One realtime byte, past everything that waits.
+struct SendRealtime {
+  std::uint8_t byte = 0;
+};
+
+/// `$X`.
+struct Unlock {};
+
+/// `$H`.
+struct Home {};
+
+/// `$J=` with these words, such as "G91G21X10F1000".
+struct Jog {
+  std::string words;
+};
+
+/// 0x85.
+struct CancelJog {};
+
+/// 0x18, also while the handshake waits for a machine that it may not reset on its own account.
+struct SoftReset {};
+
+using Command = std::variant<StartJob, HoldJob, ResumeJob, StopJob, AbortJob, SendLine, SendRealtime, Unlock, Home, Jog,
+                             CancelJog, SoftReset>;
+
+/// Why a command was not obeyed.
+enum class Refused {
+  NotConnected,      ///< no link
+  NotIdentified,     ///< the handshake has not finished
+  PendantInControl,  ///< a pendant has the machine
+  MachineNotIdle,    ///< needs Idle or Check
+  MachineInAlarm,    ///< unlock or home first
+  JobUnderWay,       ///< another job runs
+  NoJob,             ///< there is nothing to hold, resume or stop
+  NotAtRest,         ///< resume needs Hold:0, Door:0 or Tool
+  LineTooLong,       ///< longer than the controller takes
+  RealtimeInLine,    ///< `?`, `!`, `~` or a byte that is not ASCII text
+  NeverSent,         ///< would desynchronise or crash the controller (protocol.md 11, rule 15)
+};
+BOOST_DESCRIBE_ENUM(Refused, NotConnected, NotIdentified, PendantInControl, MachineNotIdle, MachineInAlarm, JobUnderWay,
+                    NoJob, NotAtRest, LineTooLong, RealtimeInLine, NeverSent)
+
+}  // namespace kerf::session

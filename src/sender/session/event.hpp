@@ -1,0 +1,145 @@
+#pragma once
+// What a session tells its observers. Events are past participles and carry everything that a person needs to
+// understand them.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <boost/describe.hpp>
+
+#include "common/protocol/message.hpp"
+#include "sender/job/job_state.hpp"
+#include "sender/machine/snapshot.hpp"
+#include "sender/session/command.hpp"
+#include "sender/streaming/ledger.hpp"
+
+namespace kerf::session {
+
+/// A line went to the wire.
+struct LineSent {
+  streaming::Purpose purpose{};
+  std::uint32_t file_line = 0;
+  std::string text;
+};
+BOOST_DESCRIBE_STRUCT(LineSent, (), (purpose, file_line, text))
+
+/// A line came in: as it was, and as it was understood. An answer says which line it answers.
+struct LineReceived {
+  protocol::Message message;
+  std::string raw;
+  std::optional<streaming::OwedLine> answers;
+};
+
+/// The handshake is under way, in one sentence.
+struct HandshakeNoted {
+  std::string sentence;
+};
+BOOST_DESCRIBE_STRUCT(HandshakeNoted, (), (sentence))
+
+/// Kerf resets the machine of its own accord, and why. Comes before the byte.
+struct ControllerReset {
+  std::string reason;
+};
+BOOST_DESCRIBE_STRUCT(ControllerReset, (), (reason))
+
+/// The machine does something that Kerf did not start, or a pendant has it: Kerf watches and waits.
+struct ControllerBusy {
+  vocabulary::MachineState state{};
+  bool pendant = false;
+  std::string sentence;
+};
+BOOST_DESCRIBE_STRUCT(ControllerBusy, (), (state, pendant, sentence))
+
+/// The handshake is complete: commands are obeyed from now on.
+struct ControllerFound {
+  std::string sentence;
+};
+BOOST_DESCRIBE_STRUCT(ControllerFound, (), (sentence))
+
+enum class HandshakeFailure {
+  Silent,           ///< not a byte came
+  NotGrbl,          ///< bytes came, none of them Grbl's
+  LinesUnanswered,  ///< reports come, but no line is answered
+  Restarting,       ///< the controller restarts again and again
+  LinkLost,         ///< closed before it was done
+};
+BOOST_DESCRIBE_ENUM(HandshakeFailure, Silent, NotGrbl, LinesUnanswered, Restarting, LinkLost)
+
+/// No machine that Kerf can work with; the sentence says what was found and what to do.
+struct HandshakeFailed {
+  HandshakeFailure failure{};
+  std::string sentence;
+};
+BOOST_DESCRIBE_STRUCT(HandshakeFailed, (), (failure, sentence))
+
+/// A status report changed the snapshot.
+struct StatusReported {
+  vocabulary::MachineState before{};
+  vocabulary::MachineState after{};
+};
+BOOST_DESCRIBE_STRUCT(StatusReported, (), (before, after))
+
+/// A welcome came in after the handshake. `asked` when Kerf had sent the reset.
+struct ControllerRestarted {
+  bool asked = false;
+  std::vector<streaming::OwedLine> lines_lost;
+};
+BOOST_DESCRIBE_STRUCT(ControllerRestarted, (), (asked, lines_lost))
+
+struct AlarmRaised {
+  int code = 0;
+  std::string title;
+  std::string text;
+};
+BOOST_DESCRIBE_STRUCT(AlarmRaised, (), (code, title, text))
+
+/// An `error:` to a line. For a job line also the job's state tells it.
+struct LineRefused {
+  streaming::Purpose purpose{};
+  job::Refusal refusal;
+  /// A repeat of the first error by a controller that latches (protocol.md 6.4): the line was not executed.
+  bool latched_repeat = false;
+};
+BOOST_DESCRIBE_STRUCT(LineRefused, (), (purpose, refusal, latched_repeat))
+
+struct JobStarted {
+  std::string program;
+};
+BOOST_DESCRIBE_STRUCT(JobStarted, (), (program))
+
+/// The job moved on, or its phase changed.
+struct JobProgressed {
+  job::JobState job;
+};
+BOOST_DESCRIBE_STRUCT(JobProgressed, (), (job))
+
+/// The job reached a final phase; `job.reason` says how.
+struct JobEnded {
+  job::JobState job;
+};
+BOOST_DESCRIBE_STRUCT(JobEnded, (), (job))
+
+struct CommandRefused {
+  Refused reason{};
+  std::string sentence;
+};
+BOOST_DESCRIBE_STRUCT(CommandRefused, (), (reason, sentence))
+
+/// Status questions stay without an answer although the link is open.
+struct LinkSilent {
+  double silent_for_s = 0;
+};
+BOOST_DESCRIBE_STRUCT(LinkSilent, (), (silent_for_s))
+
+/// Answers come again after a LinkSilent.
+struct LinkAnswering {};
+BOOST_DESCRIBE_STRUCT(LinkAnswering, (), ())
+
+using Event = std::variant<LineSent, LineReceived, HandshakeNoted, ControllerReset, ControllerBusy, ControllerFound,
+                           HandshakeFailed, StatusReported, ControllerRestarted, AlarmRaised, LineRefused, JobStarted,
+                           JobProgressed, JobEnded, CommandRefused, LinkSilent, LinkAnswering>;
+
+}  // namespace kerf::session
