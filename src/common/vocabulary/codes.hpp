@@ -1,0 +1,37 @@
+#pragma once
+// What a row of the error and alarm tables looks like.
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "common/vocabulary/firmware.hpp"
+
+namespace kerf::vocabulary {
+
+/// The build that has a word. `Usual` is what the reference build of each firmware has; grblHAL lists a code in `$EE`
+/// only if it was compiled in.
+enum class BuildOption : std::uint8_t {
+  Usual,
+  Expressions,
+  CutterCompensation,
+  FileSystem,
+  Bluetooth,
+  Driver,  ///< depends on the board's driver or a plugin
+};
+
+/// One error or alarm of one firmware, in our own words. `title` fits a headline (no full stop); `text` says the cause
+/// and what to do. Neither contains `|`, `]` or `"`, so the virtual controllers can print them in enumerations.
+struct CodeRow {
+  int code{};
+  std::string_view title;
+  std::string_view text;
+  FirmwareSet known_to{};
+  bool critical = false;  ///< alarms: only a reset helps
+  BuildOption build = BuildOption::Usual;
+};
+
+/// The row with `code` in one firmware's table (sorted by code).
+[[nodiscard]] const CodeRow* find_code(std::span<const CodeRow> rows, int code);
+
+}  // namespace kerf::vocabulary

@@ -1,0 +1,122 @@
+#pragma once
+// The settings (`$n=value`) of the three firmwares (protocol.md 7). Names, units, formats, ranges and defaults are the
+// firmware's interface; descriptions are our own words. Ids are only unique per firmware.
+
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/vocabulary/axis.hpp"
+#include "common/vocabulary/codes.hpp"
+#include "common/vocabulary/firmware.hpp"
+
+namespace kerf::vocabulary {
+
+/// grblHAL's type codes as `$ES` prints them (protocol.md 5.2).
+enum class SettingType : std::uint8_t {
+  Bool = 0,
+  Bitfield = 1,
+  ExclusiveBitfield = 2,  ///< bit 0 enables the rest
+  Radio = 3,
+  AxisMask = 4,
+  Integer = 5,
+  Decimal = 6,
+  Text = 7,
+  Password = 8,  ///< read back in plain text on serial and telnet: mask it in logs
+  Ipv4 = 9,
+};
+
+/// A limit of a setting as `$ES` prints it (`2.0`, `20`); absent if there is none. For texts it is a length. Reads like
+/// a `std::optional<double>`.
+class SettingLimit {
+ public:
+  constexpr SettingLimit() = default;
+  consteval SettingLimit(const char* text) : text_{text}, value_{parse(text)} {}  // implicit, so that rows stay short
+
+  [[nodiscard]] constexpr bool has_value() const { return !text_.empty(); }
+  constexpr explicit operator bool() const { return has_value(); }
+  [[nodiscard]] constexpr double operator*() const { return value_; }
+  [[nodiscard]] constexpr double value() const { return value_; }
+  [[nodiscard]] constexpr std::string_view text() const { return text_; }
+
+ private:
+  // std::from_chars is not constexpr for doubles in g++ 12; limits are short, so digits and one point are enough.
+  static consteval double parse(std::string_view text) {
+    double value = 0;
+    double scale = 0;
+    for (const char letter : text) {
+      if (letter == '-') continue;
+      if (letter == '.') {
+        scale = 1;
+        continue;
+      }
+      value = value * 10 + (letter - '0');
+      scale *= 10;
+    }
+    if (scale > 0) value /= scale;
+    return text.starts_with('-') ? -value : value;
+  }
+
+  std::string_view text_;
+  double value_ = 0;
+};
+
+/// One setting, or one setting an axis. In a `per_axis` row `id` is X's, axis n has `id + n`, `group` is X's group and
+/// `name` follows the axis letter ("-axis maximum rate").
+struct SettingRow {
+  int id{};
+  int group{};
+  std::string_view name;
+  std::string_view unit;
+  SettingType type{};
+  std::string_view format;  ///< `$ES`: item names for bit fields and radios, a `#0` mask for numbers, `x(32)` for texts
+  SettingLimit min;
+  SettingLimit max;
+  std::string_view default_value;  ///< as `$$` prints it; a mask over all axes is for three axes
+  bool reboot = false;             ///< acts after a power cycle only
+  bool allow_null = false;         ///< the empty text is accepted; for numbers: 0 is, below `min`
+  bool per_axis = false;
+  BuildOption build = BuildOption::Usual;  ///< `Usual` rows are in the reference build's `$$`
+  std::string_view path;                   ///< Rabbit's name, such as "Homing/Enable"; `id` is -1 if that is all it has
+  std::string_view description;            ///< what it does, in our words; `\n` is written as two characters
+};
+
+/// A group of `$EG`.
+struct SettingGroupRow {
+  int id{};
+  int parent{};
+  std::string_view name;
+};
+
+[[nodiscard]] std::span<const SettingGroupRow> setting_group_rows();
+
+/// `firmware`'s settings, sorted by id, ids unique (Rabbit's named-only ones come last). For an unknown firmware: none.
+[[nodiscard]] std::span<const SettingRow> setting_rows(Firmware firmware);
+
+/// A row, and which axis of it was asked for (0 for rows that are not `per_axis`).
+struct SettingMatch {
+  const SettingRow* row = nullptr;
+  int axis = 0;
+};
+
+/// The setting with number `id`, on a machine with `axes` axes.
+[[nodiscard]] std::optional<SettingMatch> find_setting(std::span<const SettingRow> rows, int id,
+                                                       int axes = static_cast<int>(kMaxAxes));
+
+/// The row whose number (`110`) or Rabbit name (`Homing/Enable`) is `key`, as `SettingValue::id` holds it.
+[[nodiscard]] std::optional<SettingMatch> find_setting(std::span<const SettingRow> rows, std::string_view key,
+                                                       int axes = static_cast<int>(kMaxAxes));
+
+/// The name as `$ES` prints it: "X-axis maximum rate".
+[[nodiscard]] std::string full_name(const SettingMatch& match);
+/// The group as `$ES` prints it: an axis has its own.
+[[nodiscard]] int group_of(const SettingMatch& match);
+/// The items of a bit field or radio, in order; unavailable ones are "N/A".
+[[nodiscard]] std::string_view item_of(const SettingRow& row, int index);
+/// Digits after the point that a `#0.000##` mask prints; 0 for integers.
+[[nodiscard]] int decimals_of(const SettingRow& row);
+
+}  // namespace kerf::vocabulary

@@ -1,0 +1,70 @@
+#pragma once
+// The fields of a status report after the state (protocol.md 3.1).
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "common/vocabulary/firmware.hpp"
+#include "common/vocabulary/report_mask.hpp"
+
+namespace kerf::vocabulary {
+
+/// Every field that a firmware core prints. `PluginFields` stands for the place where grblHAL's plugins add theirs.
+enum class StatusField : std::uint8_t {
+  MachinePosition,
+  WorkPosition,
+  Buffer,
+  LineNumber,
+  DistanceToGo,
+  FeedAndSpeed,
+  Feed,
+  ExtraSpindle,
+  ActiveSpindle,
+  Pins,
+  WorkOffset,
+  WorkCoordinateSystem,
+  Overrides,
+  Accessories,
+  Scaling,
+  AutoReport,
+  Mpg,
+  Homed,
+  Diameter,
+  Tool,
+  Probe,
+  ToolLengthReference,
+  InputResult,
+  PluginFields,
+  FirmwareName,
+  CriticalEvent,
+};
+
+struct StatusFieldRow {
+  StatusField field{};
+  std::string_view name;    ///< as on the wire, without the colon; "SP" takes a number; empty for `PluginFields`
+  std::string_view syntax;  ///< of the value
+  std::string_view text;    ///< what it tells and when it is sent
+  FirmwareSet known_to{};
+  std::optional<ReportBit> needs;  ///< the `$10` bit that it depends on
+};
+
+/// All rows, in enumerator order.
+[[nodiscard]] std::span<const StatusFieldRow> status_field_rows();
+[[nodiscard]] const StatusFieldRow& row_of(StatusField field);
+
+/// A field that a grblHAL plugin adds; kept as unknown fields in a decoded report.
+struct PluginFieldRow {
+  std::string_view name;
+  std::string_view text;
+};
+
+[[nodiscard]] std::span<const PluginFieldRow> plugin_field_rows();
+
+/// Grbl 1.1h and Rabbit: state, position, Bf, Ln, FS, Pn, WCO, Ov, A (gnea/grbl report.c).
+[[nodiscard]] std::span<const StatusField> grbl_field_order();
+/// grblHAL's order (report.c 1205-1616).
+[[nodiscard]] std::span<const StatusField> grblhal_field_order();
+
+}  // namespace kerf::vocabulary
