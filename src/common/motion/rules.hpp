@@ -1,0 +1,77 @@
+#pragma once
+// What differs between the firmwares' motion, as values, and the machine's settings that motion depends on.
+//
+// Units inside common/motion are the firmware's own, because its 32-bit results depend on them: mm, minutes, mm/min,
+// mm/min² and motor steps; time outside (events, deadlines) is kerf::base's nanoseconds.
+
+#include <array>
+#include <cstdint>
+
+#include "common/base/time.hpp"
+#include "common/vocabulary/axis.hpp"
+#include "common/vocabulary/firmware.hpp"
+
+namespace kerf::motion {
+
+using vocabulary::AxisMask;
+using vocabulary::AxisSteps;
+using vocabulary::AxisValues;
+using vocabulary::kMaxAxes;
+
+/// How the compiler of a firmware reads `0.5` and computes `sqrt(x)`: AVR has no double and grblHAL writes `0.5f`;
+/// on the ESP32 (Rabbit) literals and library calls are double, and each assignment rounds back to 32 bits.
+enum class FloatRule : std::uint8_t { Single, DoubleLiterals };
+
+/// A firmware's motion in numbers (motion.md 1.2 to 1.5).
+struct MotionRules {
+  FloatRule float_rule = FloatRule::Single;
+  /// Blocks that the planner can hold; grblHAL's `$398` replaces it (MotionSettings::planner_blocks).
+  int planner_blocks = 15;
+  /// Prepared step segments that can wait, the executing one included.
+  int segment_slots = 5;
+  /// Segments per second (ACCELERATION_TICKS_PER_SECOND).
+  int segments_per_s = 100;
+  std::uint32_t step_timer_hz = 16'000'000;
+  /// Timer counts added to each programmed period (an AVR compare match at N lasts N + 1).
+  std::uint32_t extra_counts_per_tick = 1;
+  /// Longest period that fits the step timer, in counts.
+  std::uint32_t longest_tick_counts = 0xFFFF;
+  /// Step interrupts per second below which adaptive step smoothing doubles, quadruples and octuples them.
+  std::array<std::uint32_t, 3> smoothing_below_hz = {8000, 4000, 2000};
+  /// Slowest nominal speed of any block.
+  float minimum_rate_mm_per_min = 1.0F;
+  /// A hold that would end within this distance of the block's end ends at the block's end (grblHAL).
+  float hold_snap_mm = 0.0F;
+  /// True: a stop waits for `$1` inside the step interrupt before the machine counts as idle (Grbl).
+  bool idle_lock_blocks = false;
+  /// True: a motion cancel may drop segments that are already prepared (grblHAL).
+  bool cancel_drops_segments = false;
+  /// Arcs check that the tolerance fits the radius before dividing (grblHAL).
+  bool arc_checks_tolerance = false;
+  /// Dwells last a whole number of these (50 ms on Grbl and grblHAL, 1 ms on Rabbit).
+  Duration dwell_step = std::chrono::milliseconds{50};
+
+  bool operator==(const MotionRules&) const = default;
+};
+
+/// The rules of `firmware`; those of Grbl for an unknown one.
+[[nodiscard]] const MotionRules& rules_of(vocabulary::Firmware firmware);
+
+/// `$` settings that shape motion, in the units of the settings.
+struct MotionSettings {
+  int axes = 3;
+  AxisValues steps_per_mm{};
+  AxisValues max_rate_mm_per_min{};
+  AxisValues acceleration_mm_per_s2{};
+  float junction_deviation_mm = 0.01F;
+  float arc_tolerance_mm = 0.002F;
+  bool laser_mode = false;
+  /// `$1`; 255 keeps the motors locked.
+  std::uint8_t idle_delay_ms = 25;
+  /// `$398`; 0 takes MotionRules::planner_blocks.
+  int planner_blocks = 0;
+
+  bool operator==(const MotionSettings&) const = default;
+};
+
+}  // namespace kerf::motion
