@@ -20,7 +20,7 @@ function(kerf_library name)
     target_include_directories(${name} INTERFACE ${PROJECT_SOURCE_DIR}/src)
     target_link_libraries(${name} INTERFACE ${ARG_LINK})
   endif()
-  if(tests AND NOT KERF_FUZZ)
+  if(tests AND KERF_TESTS)
     add_executable(${name}_test ${tests})
     target_link_libraries(${name}_test PRIVATE ${name} GTest::gmock_main rapidcheck)
     target_precompile_headers(${name}_test PRIVATE <gtest/gtest.h> <gmock/gmock.h>)
@@ -28,10 +28,25 @@ function(kerf_library name)
   endif()
 endfunction()
 
-# kerf_fuzzer(NAME): tests/fuzz/NAME.cpp as a libFuzzer program.
+# kerf_fuzzer(NAME LINK lib…)
+# tests/fuzz/NAME.cpp as a libFuzzer program, and a ctest `fuzz.NAME` that runs it for KERF_FUZZ_SECONDS from the inputs
+# of tests/corpus/NAME. What it finds on the way stays in the build folder.
 function(kerf_fuzzer name)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
   add_executable(${name} ${PROJECT_SOURCE_DIR}/tests/fuzz/${name}.cpp)
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+
+  set(found ${CMAKE_CURRENT_BINARY_DIR}/found/${name})
+  set(seeds ${PROJECT_SOURCE_DIR}/tests/corpus/${name})
+  file(MAKE_DIRECTORY ${found})
+  if(NOT EXISTS ${seeds})
+    set(seeds)
+  endif()
+  if(KERF_TESTS)
+    add_test(NAME fuzz.${name}
+             COMMAND ${name} -max_total_time=${KERF_FUZZ_SECONDS} -timeout=10 -verbosity=0 -artifact_prefix=${found}-
+                     ${found} ${seeds})
+    set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz)
+  endif()
 endfunction()

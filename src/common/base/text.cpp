@@ -40,7 +40,7 @@ bool starts_with_ignoring_case(std::string_view text, std::string_view prefix) {
 std::optional<double> parse_decimal(std::string_view text) {
   const std::string_view digits = text.starts_with('-') ? text.substr(1) : text;
   // from_chars would read `inf` and `nan`.
-  if (digits.empty() || !(is_digit(digits.front()) || digits.front() == '.')) return std::nullopt;
+  if (digits.empty() || (!is_digit(digits.front()) && digits.front() != '.')) return std::nullopt;
   double value = 0;
   const char* const end = text.data() + text.size();
   const auto [stopped_at, error] = std::from_chars(text.data(), end, value, std::chars_format::fixed);

@@ -7,7 +7,8 @@
 
 namespace kerf::base {
 
-/// A clock without `now()`, so that the compiler refuses ambient time. Real time enters in `io/`, virtual time in `simulation/`.
+/// A clock without `now()`, so that the compiler refuses ambient time. Real time enters in `io/`, virtual time in
+/// `simulation/`.
 struct Clock {
   using rep = std::int64_t;
   using period = std::nano;
@@ -29,10 +30,14 @@ inline constexpr Instant kNever = Instant::max();
   return Duration{std::llround(seconds * 1e9)};
 }
 
-[[nodiscard]] constexpr double to_seconds(Duration duration) { return static_cast<double>(duration.count()) * 1e-9; }
+[[nodiscard]] constexpr double to_seconds(Duration duration) {
+  return static_cast<double>(duration.count()) * 1e-9;
+}
 
 /// Seconds since the epoch of whoever started the clock.
-[[nodiscard]] constexpr double to_seconds(Instant instant) { return to_seconds(instant.time_since_epoch()); }
+[[nodiscard]] constexpr double to_seconds(Instant instant) {
+  return to_seconds(instant.time_since_epoch());
+}
 
 }  // namespace kerf::base
 

@@ -1,0 +1,43 @@
+# The commands of the project. `make run` and `make test` install what is missing (Debian 12, apt).
+JOBS ?= $(shell nproc)
+# SINCE=<commit> lets `make lint` look only at what changed since then.
+SINCE ?=
+
+.PHONY: run build test tidy format lint clean
+
+# A part of about four minutes, cut by the built-in virtual grblHAL in a few seconds.
+run: build
+	build/kerf run examples/coaster.nc --machine "virtual:grblhal?speed=20"
+
+build:
+	tools/install_dependencies.sh run
+	test -f build/release/build.ninja || cmake --preset release -DKERF_TESTS=OFF
+	cmake --build --preset release --target kerf -j $(JOBS)
+
+# Everything: what is shipped with all its tests, then the core again under the sanitizers with a short run of each
+# fuzz target.
+test:
+	tools/install_dependencies.sh test
+	cmake --preset release -DKERF_TESTS=ON
+	cmake --build --preset release -j $(JOBS)
+	ctest --preset release
+	cmake --preset asan
+	cmake --build --preset asan -j $(JOBS)
+	ctest --preset asan
+
+# The rules of docs/architecture.md, in a second.
+tidy:
+	tools/tidy.py
+
+format:
+	tools/format.sh
+
+# The form of every file and clang-tidy over every source.
+lint:
+	tools/install_dependencies.sh lint
+	tools/format.sh --check
+	cmake --preset asan -B build/lint -DKERF_EDGES=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
+	tools/clang_tidy.sh build/lint $(SINCE)
+
+clean:
+	rm -rf build
