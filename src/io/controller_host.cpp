@@ -1,0 +1,105 @@
+#include "io/controller_host.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <utility>
+
+namespace kerf::io {
+namespace {
+
+using namespace std::chrono_literals;
+using vocabulary::MachineState;
+
+/// How long a peer on the same computer may take to answer an `ok` with the next line.
+constexpr Duration kPeerPatience = 2ms;
+/// A machine at rest jumps only this long after it heard something: a dwell or the pause after an alarm passes at once,
+/// while periodic reports do not come a thousand times a second.
+constexpr Duration kRestJumps = 250ms;
+/// Real time that one loop turn may spend on jumps.
+constexpr Duration kTurn = 1ms;
+
+bool is_moving(MachineState state) {
+  return state == MachineState::Run || state == MachineState::Jog || state == MachineState::Home ||
+         state == MachineState::Hold || state == MachineState::Door;
+}
+
+}  // namespace
+
+ControllerHost::ControllerHost(EventLoop& loop, firmware::VirtualController controller, Speed speed)
+    : loop_(loop), controller_(std::move(controller)), speed_(speed), timer_(loop) {}
+
+void ControllerHost::power_on() {
+  real_began_ = loop_.now();
+  last_input_ = real_began_;
+  saved_revision_ = controller_.stored_revision();
+  controller_.power_on(virtual_now());
+  settle();
+}
+
+void ControllerHost::receive(std::string_view bytes) {
+  last_input_ = loop_.now();
+  patient_until_ = last_input_;
+  const Instant now = virtual_now();
+  controller_.advance_to(now);
+  controller_.on_bytes(now, bytes);
+  settle();
+}
+
+Instant ControllerHost::virtual_now() const {
+  const Duration real = loop_.now() - real_began_;
+  return virtual_began_ + base::from_seconds(base::to_seconds(real) * speed_.factor.value_or(1.0));
+}
+
+Instant ControllerHost::real_time_of(Instant virtual_time) const {
+  if (virtual_time == kNever) return kNever;
+  const double seconds = base::to_seconds(virtual_time - virtual_began_) / speed_.factor.value_or(1.0);
+  return real_began_ + base::from_seconds(seconds);
+}
+
+bool ControllerHost::may_jump() const {
+  if (!speed_.is_max() || controller_.next_deadline() == kNever) return false;
+  return is_moving(controller_.state()) || loop_.now() < last_input_ + kRestJumps;
+}
+
+void ControllerHost::jump() {
+  const Instant turn_ends = loop_.now() + kTurn;
+  std::string sent;
+  while (sent.empty() && may_jump() && loop_.now() < turn_ends) {
+    const Instant deadline = std::max(controller_.next_deadline(), virtual_now());
+    controller_.advance_to(deadline);
+    real_began_ = loop_.now();
+    virtual_began_ = deadline;
+    sent = controller_.take_outbox();
+  }
+  if (sent.empty()) return;
+  patient_until_ = loop_.now() + kPeerPatience;
+  if (output_) output_(sent);
+}
+
+void ControllerHost::on_timer() {
+  controller_.advance_to(virtual_now());
+  if (may_jump() && loop_.now() >= patient_until_) jump();
+  settle();
+}
+
+void ControllerHost::settle() {
+  const std::string sent = controller_.take_outbox();
+  if (!sent.empty()) {
+    patient_until_ = loop_.now() + kPeerPatience;
+    if (output_) output_(sent);
+  }
+  if (controller_.stored_revision() != saved_revision_) {
+    saved_revision_ = controller_.stored_revision();
+    if (stored_) stored_(controller_.stored());
+  }
+  arm();
+}
+
+void ControllerHost::arm() {
+  Instant at = real_time_of(controller_.next_deadline());
+  if (may_jump()) at = std::min(at, std::max(patient_until_, loop_.now()));
+  timer_.arm(at, [this] { on_timer(); });
+}
+
+}  // namespace kerf::io

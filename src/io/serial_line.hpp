@@ -1,0 +1,19 @@
+#pragma once
+// What a serial port needs beyond opening it. Apart from Asio's file, because the kernel's termios2 and the C library's
+// termios cannot be included together.
+
+namespace kerf::io {
+
+/// 8 data bits, no parity, one stop bit, no flow control, any baud rate (termios2), and DTR left up when the port is
+/// closed (an Uno-class board resets when DTR falls and rises: protocol.md 1.3). DTR and RTS themselves are not
+/// touched. Returns 0 or the system's error number; EINVAL means the driver cannot do that rate.
+[[nodiscard]] int prepare_serial_line(int descriptor, int baud);
+
+/// Claims the port for this program: TIOCEXCL keeps other users out, an advisory lock also programs of the superuser.
+/// Returns 0 or the system's error number; EWOULDBLOCK means that another program holds it.
+[[nodiscard]] int claim_serial_line(int descriptor);
+
+/// Throws away what arrived before anybody listened.
+void discard_serial_input(int descriptor);
+
+}  // namespace kerf::io

@@ -1,0 +1,75 @@
+#include "io/session_host.hpp"
+
+#include <utility>
+#include <variant>
+
+namespace kerf::io {
+namespace {
+
+session::SessionOptions with_traits_of(const MachineUrl& url, session::SessionOptions options) {
+  if (const auto* serial = std::get_if<SerialAddress>(&url)) options.link.baud = serial->baud;
+  options.link.network = std::holds_alternative<TcpAddress>(url);
+  return options;
+}
+
+session::LinkLoss loss_of(TransportFault fault) {
+  switch (fault) {
+    case TransportFault::ClosedByPeer: return session::LinkLoss::Closed;
+    case TransportFault::Unplugged: return session::LinkLoss::Unplugged;
+    case TransportFault::TimedOut: return session::LinkLoss::TimedOut;
+    default: return session::LinkLoss::Error;
+  }
+}
+
+}  // namespace
+
+SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::SessionOptions options, Callbacks callbacks)
+    : loop_(loop),
+      session_(with_traits_of(url, std::move(options))),
+      callbacks_(std::move(callbacks)),
+      timer_(loop),
+      transport_(open_transport(loop, url,
+                                {.opened =
+                                     [this] {
+                                       is_open_ = true;
+                                       session_.on_open(loop_.now());
+                                       settle();
+                                     },
+                                 .received =
+                                     [this](std::string_view bytes) {
+                                       session_.on_bytes(loop_.now(), bytes);
+                                       settle();
+                                     },
+                                 .lost = [this](const TransportError& error) { on_lost(error); }})) {}
+
+void SessionHost::submit(const session::Command& command) {
+  session_.submit(loop_.now(), command);
+  settle();
+}
+
+void SessionHost::on_lost(const TransportError& error) {
+  if (is_open_) {
+    is_open_ = false;
+    session_.on_closed(loop_.now(), loss_of(error.fault));
+    settle();
+  }
+  timer_.disarm();
+  callbacks_.lost(error);
+}
+
+void SessionHost::settle() {
+  if (is_settling_) return;  // an observer submitted a command: the loop below goes on with it
+  is_settling_ = true;
+  for (session::Outbox outbox = session_.take_outbox(); !outbox.empty(); outbox = session_.take_outbox()) {
+    if (!outbox.realtime.empty()) transport_->write_realtime(outbox.realtime);
+    if (!outbox.lines.empty()) transport_->write_lines(outbox.lines);
+    for (const session::Event& event : outbox.events) callbacks_.event(event);
+  }
+  is_settling_ = false;
+  timer_.arm(session_.next_deadline(), [this] {
+    session_.advance_to(loop_.now());
+    settle();
+  });
+}
+
+}  // namespace kerf::io

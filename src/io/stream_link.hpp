@@ -1,0 +1,100 @@
+#pragma once
+// Reading and writing of any Asio stream as a link: two queues, of which the realtime one always goes first.
+// Included only by the transports and servers, because it pulls Asio in.
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/error.hpp>
+#include <boost/asio/write.hpp>
+
+namespace kerf::io {
+
+/// Lives as long as an operation of its stream is under way; close() silences it. Loop's thread only.
+template <typename Stream>
+class StreamLink : public std::enable_shared_from_this<StreamLink<Stream>> {
+ public:
+  struct Callbacks {
+    std::function<void(std::string_view)> received;
+    std::function<void(boost::system::error_code)> lost;
+  };
+
+  StreamLink(Stream stream, Callbacks callbacks)
+      : stream_(std::move(stream)), callbacks_(std::make_shared<const Callbacks>(std::move(callbacks))) {}
+
+  void start() { read(); }
+
+  void write_realtime(std::string_view bytes) {
+    realtime_.append(bytes);
+    write();
+  }
+
+  void write_lines(std::string_view bytes) {
+    lines_.append(bytes);
+    write();
+  }
+
+  /// Bytes that wait here because the other end reads too slowly.
+  [[nodiscard]] std::size_t waiting_bytes() const { return realtime_.size() + lines_.size(); }
+  void drop_waiting_lines() { lines_.clear(); }
+
+  void close() {
+    callbacks_.reset();
+    boost::system::error_code ignored;
+    stream_.close(ignored);
+  }
+
+  [[nodiscard]] Stream& stream() { return stream_; }
+
+ private:
+  /// Small enough that a realtime byte never waits long behind one piece, large enough for a fast link.
+  static constexpr std::size_t kMostBytesAtOnce = 256;
+
+  void read() {
+    stream_.async_read_some(boost::asio::buffer(incoming_),
+                            [self = this->shared_from_this()](boost::system::error_code fault, std::size_t count) {
+                              if (fault) return self->lose(fault);
+                              const auto callbacks = self->callbacks_;  // the owner may close() in there
+                              if (!callbacks) return;
+                              callbacks->received(std::string_view(self->incoming_.data(), count));
+                              if (self->callbacks_) self->read();
+                            });
+  }
+
+  void write() {
+    if (is_writing_ || (realtime_.empty() && lines_.empty())) return;
+    is_writing_ = true;
+    std::string& queue = realtime_.empty() ? lines_ : realtime_;
+    outgoing_.assign(queue, 0, kMostBytesAtOnce);
+    queue.erase(0, outgoing_.size());
+    boost::asio::async_write(stream_, boost::asio::buffer(outgoing_),
+                             [self = this->shared_from_this()](boost::system::error_code fault, std::size_t) {
+                               self->is_writing_ = false;
+                               if (fault) return self->lose(fault);
+                               self->write();
+                             });
+  }
+
+  void lose(boost::system::error_code fault) {
+    const auto callbacks = std::exchange(callbacks_, nullptr);
+    if (!callbacks) return;
+    boost::system::error_code ignored;
+    stream_.close(ignored);
+    callbacks->lost(fault);
+  }
+
+  Stream stream_;
+  std::shared_ptr<const Callbacks> callbacks_;
+  std::array<char, 4096> incoming_{};
+  std::string realtime_;
+  std::string lines_;
+  std::string outgoing_;
+  bool is_writing_ = false;
+};
+
+}  // namespace kerf::io

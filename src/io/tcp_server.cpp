@@ -1,0 +1,107 @@
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+#include "io/server.hpp"
+#include "io/stream_link.hpp"
+#include "io/tcp_options.hpp"
+
+namespace kerf::io {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+namespace {
+
+std::string name_of(const tcp::endpoint& endpoint) {
+  return to_string(TcpAddress{.host = endpoint.address().to_string(), .port = endpoint.port()});
+}
+
+ListenError error_of(boost::system::error_code fault) {
+  ListenFault kind = ListenFault::Failed;
+  if (fault == asio::error::address_in_use) kind = ListenFault::AddressInUse;
+  if (fault == asio::error::access_denied) kind = ListenFault::NoPermission;
+  if (fault == boost::system::errc::address_not_available) kind = ListenFault::AddressUnknown;
+  return {.fault = kind, .system_text = fault.message()};
+}
+
+}  // namespace
+
+struct TcpServer::State : std::enable_shared_from_this<State> {
+  using Link = StreamLink<tcp::socket>;
+
+  State(EventLoop& loop, Callbacks on_what) : acceptor(loop.context()), callbacks(std::move(on_what)) {}
+
+  void accept() {
+    acceptor.async_accept([self = shared_from_this()](boost::system::error_code fault, tcp::socket socket) {
+      if (!self->acceptor.is_open()) return;
+      if (!fault) self->welcome(std::move(socket));
+      self->accept();
+    });
+  }
+
+  void welcome(tcp::socket socket) {
+    boost::system::error_code gone;
+    const tcp::endpoint endpoint = socket.remote_endpoint(gone);
+    if (gone) return;
+    const std::string name = name_of(endpoint);
+    if (client) {
+      callbacks.turned_away(name);
+      return;
+    }
+    prepare_tcp(socket);
+    peer = name;
+    client = std::make_shared<Link>(
+        std::move(socket),
+        Link::Callbacks{.received = callbacks.received, .lost = [self = weak_from_this()](boost::system::error_code) {
+                          if (const auto alive = self.lock()) alive->lose_client();
+                        }});
+    callbacks.connected(peer);
+    client->start();
+  }
+
+  void lose_client() {
+    client.reset();
+    callbacks.disconnected(peer);
+  }
+
+  tcp::acceptor acceptor;
+  Callbacks callbacks;
+  std::shared_ptr<Link> client;
+  std::string peer;
+};
+
+TcpServer::TcpServer(EventLoop& loop, Callbacks callbacks)
+    : state_(std::make_shared<State>(loop, std::move(callbacks))) {}
+
+TcpServer::~TcpServer() {
+  boost::system::error_code ignored;
+  state_->acceptor.close(ignored);
+  if (state_->client) state_->client->close();
+}
+
+std::expected<TcpAddress, ListenError> TcpServer::listen(const TcpAddress& address) {
+  boost::system::error_code fault;
+  tcp::resolver resolver(state_->acceptor.get_executor());
+  const auto found = resolver.resolve(address.host, std::to_string(address.port),
+                                      tcp::resolver::passive | tcp::resolver::numeric_service, fault);
+  if (fault || found.empty()) {
+    return std::unexpected(ListenError{.fault = ListenFault::AddressUnknown, .system_text = fault.message()});
+  }
+  const tcp::endpoint endpoint = found.begin()->endpoint();
+  tcp::acceptor& acceptor = state_->acceptor;
+  acceptor.open(endpoint.protocol(), fault);
+  if (!fault) acceptor.set_option(tcp::acceptor::reuse_address(true), fault);
+  if (!fault) acceptor.bind(endpoint, fault);
+  if (!fault) acceptor.listen(asio::socket_base::max_listen_connections, fault);
+  if (fault) return std::unexpected(error_of(fault));
+  state_->accept();
+  return TcpAddress{.host = address.host, .port = acceptor.local_endpoint(fault).port()};
+}
+
+void TcpServer::write(std::string_view bytes) {
+  if (state_->client) state_->client->write_lines(bytes);
+}
+
+}  // namespace kerf::io

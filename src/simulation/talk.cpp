@@ -1,0 +1,222 @@
+#include "simulation/talk.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "common/base/text.hpp"
+
+namespace kerf::simulation {
+namespace {
+
+using firmware::Input;
+using firmware::WorkcellEvent;
+using vocabulary::Firmware;
+
+constexpr std::array<std::pair<std::string_view, Firmware>, 3> kPersonalities{
+    {{"grbl", Firmware::Grbl}, {"rabbit", Firmware::Rabbit}, {"grblhal", Firmware::GrblHal}}};
+
+constexpr std::array<std::pair<std::string_view, Input>, 6> kSwitches{{{"probe", Input::Probe},
+                                                                       {"door", Input::Door},
+                                                                       {"hold", Input::FeedHold},
+                                                                       {"start", Input::CycleStart},
+                                                                       {"reset", Input::Reset},
+                                                                       {"estop", Input::EmergencyStop}}};
+
+template <typename Value, std::size_t N>
+std::optional<Value> row_of(const std::array<std::pair<std::string_view, Value>, N>& rows, std::string_view word) {
+  for (const auto& [name, value] : rows) {
+    if (name == word) return value;
+  }
+  return std::nullopt;
+}
+
+std::string_view without_trailing_blanks(std::string_view line) {
+  while (!line.empty() && base::is_blank(line.back())) line.remove_suffix(1);
+  return line;
+}
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (const std::string_view word : base::split(text, ' ')) {
+    if (!word.empty()) words.push_back(word);
+  }
+  return words;
+}
+
+/// Text that is nothing but `\xNN` escapes is sent raw.
+bool is_only_hex_escapes(std::string_view text) {
+  constexpr std::size_t kEscape = 4;
+  if (text.empty() || text.size() % kEscape != 0) return false;
+  for (std::size_t at = 0; at < text.size(); at += kEscape) {
+    const std::string_view escape = text.substr(at, kEscape);
+    if (!escape.starts_with("\\x") || !base::parse_int(escape.substr(2), 16)) return false;
+  }
+  return true;
+}
+
+/// "+1s", "+200ms", "+0.5s"
+std::optional<Duration> time_of(std::string_view text) {
+  if (!text.starts_with('+')) return std::nullopt;
+  text.remove_prefix(1);
+  const double scale = text.ends_with("ms") ? 1e-3 : 1.0;
+  if (!text.ends_with('s')) return std::nullopt;
+  text.remove_suffix(text.ends_with("ms") ? 2 : 1);
+  const auto number = base::parse_decimal(text);
+  if (!number || *number < 0) return std::nullopt;
+  return base::from_seconds(*number * scale);
+}
+
+std::optional<bool> position_of(std::string_view word) {
+  if (word == "on" || word == "open") return true;
+  if (word == "off" || word == "close") return false;
+  return std::nullopt;
+}
+
+/// "limit X on", "door open", "home X at 12.5"
+std::optional<WorkcellEvent> switch_of(std::string_view text) {
+  const auto words = words_of(text);
+  if (words.size() < 2) return std::nullopt;
+  const auto axis = words[1].size() == 1 ? vocabulary::axis_of(words[1].front()) : std::nullopt;
+  if (words[0] == "home" && words.size() == 4 && axis && words[2] == "at") {
+    const auto distance = base::parse_decimal(words[3]);
+    if (!distance) return std::nullopt;
+    return firmware::HomingSwitchMoved{.axis = *axis, .distance_mm = *distance};
+  }
+  const auto active = position_of(words.back());
+  if (!active) return std::nullopt;
+  if (words[0] == "limit" && words.size() == 3 && axis) return firmware::LimitHeld{.axis = *axis, .active = *active};
+  const auto input = row_of(kSwitches, words[0]);
+  if (!input || words.size() != 2) return std::nullopt;
+  return firmware::InputChanged{.input = *input, .active = *active};
+}
+
+using ParsedAction = std::expected<decltype(TalkStep::action), TalkFault>;
+
+ParsedAction send_text(std::string_view text) {
+  if (text == "?" || text == "!" || text == "~") return SendBytes{std::string(text)};
+  if (is_only_hex_escapes(text)) return SendBytes{base::unescape(text).value_or("")};
+  return SendBytes{std::string(text) + "\n"};
+}
+
+ParsedAction send_raw(std::string_view text) {
+  auto bytes = base::unescape(text);
+  if (!bytes) return std::unexpected(TalkFault::BadEscape);
+  return SendBytes{*std::move(bytes)};
+}
+
+ParsedAction at(std::string_view text) {
+  constexpr std::string_view kUntil = "until ";
+  if (text.starts_with(kUntil)) return WaitUntil{LinePattern(std::string(text.substr(kUntil.size())))};
+  if (text.starts_with('+')) {
+    const auto time = time_of(text);
+    if (!time) return std::unexpected(TalkFault::BadTime);
+    return LetTimePass{*time};
+  }
+  const auto event = switch_of(text);
+  if (!event) return std::unexpected(TalkFault::BadSwitch);
+  return MoveSwitch{*event};
+}
+
+ParsedAction parse_step(std::string_view line) {
+  if (line.starts_with("@ ")) return at(line.substr(2));
+  const std::string_view mark = line.substr(0, 2);
+  if (line.size() > 2 && line[2] != ' ') return std::unexpected(TalkFault::UnknownMark);
+  const std::string_view text = line.size() > 2 ? line.substr(3) : std::string_view{};
+  if (mark == "->") return send_text(text);
+  if (mark == "=>") return send_raw(text);
+  if (mark == "<-") return ExpectLine{LinePattern(std::string(text))};
+  if (mark == "<~") return AllowLines{LinePattern(std::string(text))};
+  if (mark == "<!") return ForbidLines{LinePattern(std::string(text))};
+  return std::unexpected(TalkFault::UnknownMark);
+}
+
+std::expected<void, TalkFault> read_header(Talk& talk, std::string_view text) {
+  const auto parts = base::split_at_most(base::trim(text), ' ', 2);
+  const std::string_view value = parts.size() > 1 ? base::trim(parts[1]) : std::string_view{};
+  if (parts[0] == "personality") {
+    const auto firmware = row_of(kPersonalities, value);
+    if (!firmware) return std::unexpected(TalkFault::UnknownPersonality);
+    talk.personality = *firmware;
+  } else if (parts[0] == "setting") {
+    talk.settings.emplace_back(value);
+  } else if (parts[0] == "power-up") {
+    talk.begins_at_power_up = true;
+  } else if (parts[0] == "virtual-only") {
+    talk.virtual_only_because = std::string(value);
+  } else {
+    return std::unexpected(TalkFault::UnknownHeader);
+  }
+  return {};
+}
+
+}  // namespace
+
+bool LinePattern::matches(std::string_view line) const {
+  // Two-finger matching: on a mismatch the last star takes one more character.
+  std::size_t in_line = 0;
+  std::size_t in_pattern = 0;
+  std::size_t after_star = std::string::npos;
+  std::size_t star_ends = 0;
+  while (in_line < line.size()) {
+    if (in_pattern < text_.size() && text_[in_pattern] == '*') {
+      after_star = ++in_pattern;
+      star_ends = in_line;
+    } else if (in_pattern < text_.size() && text_[in_pattern] == line[in_line]) {
+      ++in_pattern;
+      ++in_line;
+    } else if (after_star != std::string::npos) {
+      in_pattern = after_star;
+      in_line = ++star_ends;
+    } else {
+      return false;
+    }
+  }
+  return text_.find_first_not_of('*', in_pattern) == std::string::npos;
+}
+
+bool Talk::moves_switches() const {
+  return std::ranges::any_of(steps,
+                             [](const TalkStep& step) { return std::holds_alternative<MoveSwitch>(step.action); });
+}
+
+std::expected<Talk, TalkSyntaxError> parse_talk(std::string_view text, std::string_view folder_personality) {
+  Talk talk;
+  talk.personality = row_of(kPersonalities, folder_personality).value_or(Firmware::Unknown);
+  std::size_t number = 0;
+  for (const std::string_view row : base::split(text, '\n')) {
+    ++number;
+    const std::string_view line = without_trailing_blanks(row);
+    if (line.empty() || line.starts_with('#')) continue;
+    if (line.starts_with('%')) {
+      if (!talk.steps.empty()) return std::unexpected(TalkSyntaxError{TalkFault::HeaderAfterStep, number});
+      const auto header = read_header(talk, line.substr(1));
+      if (!header) return std::unexpected(TalkSyntaxError{header.error(), number});
+      continue;
+    }
+    auto action = parse_step(line);
+    if (!action) return std::unexpected(TalkSyntaxError{action.error(), number});
+    talk.steps.push_back({.line = number, .text = std::string(line), .action = *std::move(action)});
+  }
+  if (talk.personality == Firmware::Unknown) return std::unexpected(TalkSyntaxError{TalkFault::UnknownPersonality, 1});
+  return talk;
+}
+
+std::string_view explain(TalkFault fault) {
+  switch (fault) {
+    case TalkFault::UnknownMark:
+      return "a line begins with '->', '=>', '<-', '<~', '<!', '@', '%' or '#', then one space";
+    case TalkFault::UnknownHeader: return "this header is none of personality, setting, power-up and virtual-only";
+    case TalkFault::HeaderAfterStep: return "headers stand before the first step";
+    case TalkFault::UnknownPersonality:
+      return "nobody knows who speaks: add '% personality grbl', 'rabbit' or 'grblhal'";
+    case TalkFault::BadEscape: return "an escape is one of \\r \\n \\t \\\\ and \\xNN";
+    case TalkFault::BadTime: return "time is written like '@ +1s' or '@ +200ms'";
+    case TalkFault::BadSwitch:
+      return "this is no switch: write for example '@ limit X on', '@ door open', '@ home X at 12.5'";
+  }
+  return {};
+}
+
+}  // namespace kerf::simulation

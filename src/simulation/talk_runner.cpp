@@ -1,0 +1,50 @@
+#include "simulation/talk_runner.hpp"
+
+#include <algorithm>
+
+#include "firmware/personality.hpp"
+#include "firmware/virtual_controller.hpp"
+
+namespace kerf::simulation {
+namespace {
+
+/// More turns than any controller needs at one instant.
+constexpr int kMostTurnsAtOnce = 100'000;
+
+/// Carries bytes and events both ways until neither side has more to say now.
+bool deliver(Instant now, TalkConversation& conversation, firmware::VirtualController& controller) {
+  const std::string heard = controller.take_outbox();
+  if (!heard.empty()) conversation.on_bytes(now, heard);
+  conversation.advance_to(now);
+  const TalkOutbox said = conversation.take_outbox();
+  for (const auto& event : said.events) controller.submit(now, event);
+  if (!said.bytes.empty()) controller.on_bytes(now, said.bytes);
+  return !heard.empty() || !said.is_empty();
+}
+
+}  // namespace
+
+TalkOutcome run_talk(const Talk& talk) {
+  const Instant began{};
+  Instant now = began;
+  firmware::VirtualController controller(firmware::personality_of(talk.personality));
+  TalkConversation conversation(talk, now);
+  controller.power_on(now);
+  int turns = 0;
+  while (!conversation.is_finished()) {
+    if (!deliver(now, conversation, controller)) {
+      const Instant next = std::max(now, std::min(controller.next_deadline(), conversation.next_deadline()));
+      if (next == kNever) break;
+      if (next > now) turns = 0;
+      now = next;
+      controller.advance_to(now);
+    }
+    if (++turns > kMostTurnsAtOnce) break;
+  }
+  TalkOutcome outcome{
+      .failure = conversation.failure(), .record = conversation.record(), .virtual_s = base::to_seconds(now - began)};
+  if (!conversation.is_finished()) outcome.failure = TalkFailure{.line = 0, .step = "", .what = "time stands still"};
+  return outcome;
+}
+
+}  // namespace kerf::simulation
