@@ -2,6 +2,8 @@
 JOBS ?= $(shell nproc)
 # SINCE=<commit> lets `make lint` look only at what changed since then.
 SINCE ?=
+# How long `make test` runs each fuzz target.
+KERF_FUZZ_SECONDS ?= 20
 
 .PHONY: run build test tidy format lint clean
 
@@ -21,7 +23,7 @@ test:
 	cmake --preset release -DKERF_TESTS=ON
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset release
-	cmake --preset asan
+	cmake --preset asan -DKERF_FUZZ_SECONDS=$(KERF_FUZZ_SECONDS)
 	cmake --build --preset asan -j $(JOBS)
 	ctest --preset asan
 

@@ -47,6 +47,7 @@ function(kerf_fuzzer name)
     add_test(NAME fuzz.${name}
              COMMAND ${name} -max_total_time=${KERF_FUZZ_SECONDS} -timeout=10 -verbosity=0 -artifact_prefix=${found}-
                      ${found} ${seeds})
-    set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz)
+    math(EXPR limit "${KERF_FUZZ_SECONDS} + 300")
+    set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT ${limit})
   endif()
 endfunction()
