@@ -31,15 +31,44 @@ class ArcChords {
 
   /// End of the next chord; the last one is the programmed target, after which nothing comes.
   std::optional<AxisValues> next();
-  /// Chords left, the last one included.
-  [[nodiscard]] int remaining() const;
-  /// Inverse-time feeds count for the whole arc: the rate of each chord in 1/min is this times the programmed one, and
-  /// the chord is then fed as mm/min (a firmware oddity). 1 when the arc is one straight line, which stays inverse
-  /// time.
-  [[nodiscard]] int inverse_time_factor() const { return segments_; }
+  /// What the firmware multiplies an inverse-time feed (1/min) by before it treats the result as mm/min. 1, with the
+  /// feed staying inverse-time, when is_one_line().
+  [[nodiscard]] int inverse_time_factor() const { return is_one_line() ? 1 : first_chords_; }
+  /// The arc is too small to be cut.
+  [[nodiscard]] bool is_one_line() const { return first_chords_ == 0; }
 
  private:
-  int segments_ = 0;
+  /// A full turn, or the arc that remains after the full turns.
+  void begin_leg();
+  template <class Wide>
+  [[nodiscard]] float travel(const std::array<float, 2>& end) const;
+  template <class Wide>
+  [[nodiscard]] std::uint32_t chord_count(float travel) const;
+  void turn_radius();
+  void correct_radius();
+
+  Arc arc_;
+  MotionRules rules_;
+  float tolerance_mm_;
+  std::size_t axes_;
+  bool wide_;
+
+  AxisValues position_{};
+  AxisValues leg_target_{};
+  AxisValues per_turn_mm_{};
+  AxisValues per_chord_mm_{};
+  /// 64 bits for grblHAL; the others round it to 32 after every operation.
+  std::array<double, 2> radius_{};
+  std::array<double, 2> center_{};
+  float theta_ = 0;
+  float sin_ = 0;
+  float cos_ = 0;
+  int turns_left_ = 0;
+  int first_chords_ = 0;
+  std::uint32_t chords_ = 0;
+  std::uint32_t chord_ = 0;
+  int since_correction_ = 0;
+  bool finished_ = false;
 };
 
 }  // namespace kerf::motion

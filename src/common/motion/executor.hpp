@@ -1,6 +1,7 @@
 #pragma once
 // Planned blocks become motion over time: segments are prepared, then stepped, with exact positions at any instant.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <variant>
@@ -8,6 +9,8 @@
 
 #include "common/base/time.hpp"
 #include "common/motion/planner.hpp"
+#include "common/motion/segment_preparer.hpp"
+#include "common/motion/step_cursor.hpp"
 
 namespace kerf::motion {
 
@@ -78,6 +81,9 @@ class Executor {
   /// Decelerates to rest; HoldComplete follows. Also the first half of a motion cancel and jog cancel: after
   /// HoldComplete the caller clears planner and executor. Ignored unless Running.
   void begin_hold(Instant now);
+  /// As begin_hold(), but drops prepared segments that do not slow down yet, where the firmware does so (grblHAL's
+  /// 0x19); for a stop that is not resumed.
+  void begin_stop(Instant now);
   /// Runs one line from where the machine is, from rest to rest, beside the queue; only at rest or held. MotionEnded
   /// follows, unless the line is Dropped. Homing skips the `$1` delay; parking keeps the held block for a later
   /// cycle_start().
@@ -110,7 +116,79 @@ class Executor {
   /// Homing: these motors no longer move, though the reported position counts on. Replaces the previous mask.
   void freeze_axes(AxisMask axes);
 
+  /// The block under the step interrupt; null at rest.
+  [[nodiscard]] const StepBlock* executing() const;
+
   [[nodiscard]] std::vector<ExecutorEvent> take_events();
+  /// The same into a vector of the caller's, whose storage is used again.
+  void take_events(std::vector<ExecutorEvent>& into);
+
+ private:
+  static constexpr std::size_t kMostSegments = 16;
+
+  enum class Stage : std::uint8_t {
+    Idle,
+    /// Interrupts of the current segment are to come.
+    Stepping,
+    /// The segment's last interrupt is past, the next one loads a segment or finds none.
+    Draining,
+    /// Motors at rest, the interrupt waits for `$1` (Grbl).
+    Locking,
+  };
+
+  /// A threshold and the timer count at which it will be seen if the motion goes on as prepared; kNotSeen if not in
+  /// this segment.
+  struct Watch {
+    StepThreshold threshold;
+    std::int64_t seen_at = kNotSeen;
+  };
+  static constexpr std::int64_t kNotSeen = INT64_MAX;
+
+  [[nodiscard]] Instant instant_of(std::int64_t counts) const;
+  [[nodiscard]] std::int64_t counts_at(Instant at) const;
+  /// Interrupts of the current segment up to and including `counts`.
+  [[nodiscard]] std::int64_t ticks_until(std::int64_t counts) const;
+  [[nodiscard]] std::int64_t progress_until(Instant at) const;
+  [[nodiscard]] std::int64_t next_count() const;
+  [[nodiscard]] bool needs_refill() const;
+
+  void wake(Instant now);
+  void refill();
+  void run_next();
+  void finish_segment();
+  void load_or_stop();
+  void report_finished_block(Instant at);
+  void stop(Instant at);
+  void place_watches();
+  void place(Watch& watch) const;
+  void report_watch(std::size_t index);
+
+  Planner& planner_;
+  MotionRules rules_;
+  SegmentPreparer preparer_;
+  StepCursor cursor_;
+
+  std::array<Segment, kMostSegments> segments_{};
+  std::size_t first_segment_ = 0;
+  std::size_t segment_count_ = 0;
+
+  Stage stage_ = Stage::Idle;
+  bool held_ = false;
+  SystemMotion system_kind_ = SystemMotion::Homing;
+  Instant now_{};
+  /// Timer counts are measured from the start of the motion; a count is `num_/den_` nanoseconds.
+  Instant started_{};
+  std::int64_t num_ = 1;
+  std::int64_t den_ = 1;
+  /// The segment that is being stepped: a copy, because its place is free from its last interrupt on.
+  Segment current_;
+  std::int64_t segment_start_ = 0;
+  std::int64_t segment_end_ = 0;
+  bool block_to_report_ = false;
+  Instant locked_until_{};
+
+  std::vector<Watch> watches_;
+  std::vector<ExecutorEvent> events_;
 };
 
 }  // namespace kerf::motion

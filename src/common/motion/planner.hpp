@@ -51,10 +51,13 @@ class Planner {
 
   Planner(const MotionRules& rules, const MotionSettings& settings);
 
-  [[nodiscard]] bool is_full() const { return count_ == capacity_; }
-  [[nodiscard]] bool is_empty() const { return count_ == 0; }
-  [[nodiscard]] int free_blocks() const { return capacity_ - count_; }
-  [[nodiscard]] int block_count() const { return count_; }
+  Planner(const Planner&) = delete;
+  Planner& operator=(const Planner&) = delete;
+
+  [[nodiscard]] bool is_full() const { return after(head_) == tail_; }
+  [[nodiscard]] bool is_empty() const { return head_ == tail_; }
+  [[nodiscard]] int block_count() const { return head_ >= tail_ ? head_ - tail_ : head_ - tail_ + ring_size(); }
+  [[nodiscard]] int free_blocks() const { return ring_size() - 1 - block_count(); }
 
   /// Adds a line and plans anew. The queue must not be full.
   Added plan(const PathLine& line);
@@ -75,7 +78,7 @@ class Planner {
   [[nodiscard]] AxisValues position_mm() const;
   /// After motion that the planner did not see whole (homing, probe, cancelled jog).
   void sync_position(const AxisSteps& steps);
-  /// Drops all blocks and forgets the previous direction (firmware's reset); overrides stay.
+  /// Drops all blocks and forgets the previous direction (firmware's reset); position and overrides stay.
   void clear();
 
   /// Takes over changed `$` settings for lines planned from now on. `planner_blocks` only counts at construction.
@@ -84,20 +87,59 @@ class Planner {
   [[nodiscard]] const MotionRules& rules() const { return rules_; }
 
   /// Oldest block: the one whose segments are being prepared. Null when empty.
-  [[nodiscard]] const PlannedBlock* current() const { return is_empty() ? nullptr : &blocks_[tail_]; }
+  [[nodiscard]] const PlannedBlock* current() const { return is_empty() ? nullptr : &ring_[slot(tail_)]; }
 
  private:
   friend class SegmentPreparer;
 
+  [[nodiscard]] static std::size_t slot(int index) { return static_cast<std::size_t>(index); }
+  [[nodiscard]] int ring_size() const { return static_cast<int>(ring_.size()); }
+  [[nodiscard]] int after(int index) const { return index + 1 == ring_size() ? 0 : index + 1; }
+  [[nodiscard]] int before(int index) const { return index == 0 ? ring_size() - 1 : index - 1; }
+
+  Added fill_block(PlannedBlock& block, const PathLine& line, const AxisSteps& start, AxisSteps& target,
+                   AxisValues& direction) const;
+  [[nodiscard]] float unit_vector(AxisValues& vector) const;
+  [[nodiscard]] float limit_by_axis(const AxisValues& limits, const AxisValues& direction) const;
+  [[nodiscard]] float acceleration_along(const AxisValues& direction) const;
+  [[nodiscard]] float junction_speed_sqr(const AxisValues& direction) const;
+  [[nodiscard]] float nominal_speed(const PlannedBlock& block) const;
+  static void limit_entry(PlannedBlock& block, float nominal, float previous_nominal);
+  void recalculate();
+  void reverse_pass();
+  void forward_pass();
+  void replan_all();
+
+  // For the segment preparer.
+  [[nodiscard]] PlannedBlock& front() { return ring_[slot(tail_)]; }
+  [[nodiscard]] PlannedBlock& system_block() { return ring_[slot(head_)]; }
+  [[nodiscard]] float exit_speed_sqr() const;
+  void discard_front();
+  void reread_preparing_block();
+
   MotionRules rules_;
   MotionSettings settings_;
-  std::vector<PlannedBlock> blocks_;
-  int capacity_;
+  /// Acceleration as the firmware stores it: mm/min², or mm/s² where it converts last.
+  AxisValues stored_acceleration_{};
+  /// One place more than blocks: the free one at `head_` takes system motions.
+  std::vector<PlannedBlock> ring_;
+  int head_ = 0;
   int tail_ = 0;
-  int count_ = 0;
+  /// First block that later blocks can still change.
+  int planned_ = 0;
   int feed_percent_ = 100;
   int rapid_percent_ = 100;
   AxisSteps position_{};
+  AxisValues previous_direction_{};
+  float previous_nominal_ = 0;
+
+  /// The block whose segments are being prepared, if its speed profile is up to date; null makes the preparer read it
+  /// again.
+  PlannedBlock* preparing_ = nullptr;
+  /// Speed at the end of the last prepared segment.
+  float prepared_speed_ = 0;
+  /// The block in preparation was re-planned in mid-block.
+  bool profile_changed_ = false;
 };
 
 }  // namespace kerf::motion

@@ -36,18 +36,42 @@ struct MotionRules {
   std::uint32_t extra_counts_per_tick = 1;
   /// Longest period that fits the step timer, in counts.
   std::uint32_t longest_tick_counts = 0xFFFF;
+  /// Timer counts from the start of the stepper to its first interrupt: 0 on Grbl, whose timer never stops; grblHAL's
+  /// driver loads a period of its own.
+  std::uint32_t wake_counts = 0;
+  /// True: the first interrupt comes after the period that was written last, at power-up the longest one (Rabbit).
+  bool wake_waits_last_period = false;
   /// Step interrupts per second below which adaptive step smoothing doubles, quadruples and octuples them.
   std::array<std::uint32_t, 3> smoothing_below_hz = {8000, 4000, 2000};
   /// Slowest nominal speed of any block.
   float minimum_rate_mm_per_min = 1.0F;
+  /// True: sums over the axes run from the last axis to the first (grblHAL), which changes their last bit.
+  bool sums_from_last_axis = false;
+  /// True: an overridden feed is first capped at the rapid rate, then scaled, then capped again (grblHAL).
+  bool override_caps_first = false;
+  /// True: accelerations are limited in mm/s² and converted afterwards (Rabbit); else the settings are converted first.
+  bool acceleration_converted_last = false;
+  /// True: a replan with an empty queue does nothing (grblHAL). On the others it walks over blocks that are long done
+  /// and may leave the mark of "optimal so far" on one of them.
+  bool replan_needs_blocks = false;
+  /// True: slowing down for a lower override ends by distance (Rabbit); else by speed.
+  bool override_ramp_ends_by_distance = false;
+  /// True: each start of the stepper begins its block's Bresenham counters anew, also in mid-block after a hold
+  /// (grblHAL).
+  bool restart_resets_bresenham = false;
   /// A hold that would end within this distance of the block's end ends at the block's end (grblHAL).
   float hold_snap_mm = 0.0F;
   /// True: a stop waits for `$1` inside the step interrupt before the machine counts as idle (Grbl).
   bool idle_lock_blocks = false;
   /// True: a motion cancel may drop segments that are already prepared (grblHAL).
   bool cancel_drops_segments = false;
-  /// Arcs check that the tolerance fits the radius before dividing (grblHAL).
-  bool arc_checks_tolerance = false;
+  /// True: arcs turn their radius vector in 64 bits (grblHAL).
+  bool arc_radius_in_double = false;
+  /// True: all axes outside the arc's plane move along with it (grblHAL); else only the helix axis, the others follow
+  /// in the last chord.
+  bool arc_moves_all_axes = false;
+  /// Bits of the chord counter: 16 on Grbl and Rabbit.
+  std::uint32_t arc_chord_mask = 0xFFFF;
   /// Dwells last a whole number of these (50 ms on Grbl and grblHAL, 1 ms on Rabbit).
   Duration dwell_step = std::chrono::milliseconds{50};
 
