@@ -1,6 +1,5 @@
 #pragma once
-// One callable made of several, for std::visit: `std::visit(Overloaded{[](const Ok&) {…}, [](const auto&) {…}},
-// message)`.
+// One callable made of several, one for each type that a variant may hold: `std::visit(Overloaded{…, …}, message)`.
 
 namespace kerf::base {
 
