@@ -7,7 +7,7 @@ build=$1
 since=${2:-}
 
 if [[ -z $since ]]; then
-  sources=$(find src tests -name '*.cpp')
+  sources=$(find . -path ./build -prune -o -name '*.cpp' -print | sed 's|^\./||')
 else
   sources=$({ git diff --name-only --diff-filter=d "$since"; git ls-files --others --exclude-standard; } |
     sed -nE 's/\.[ch]pp$//p' | sed 's/_test$//' | sort -u |
