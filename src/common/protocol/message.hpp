@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -23,9 +24,12 @@ struct Ok {
   friend bool operator==(const Ok&, const Ok&) = default;
 };
 
-/// `error:20`
+/// `error:20`, or `error: Bad number format` from a Rabbit GRBL that is set to verbose errors (and from Grbl 0.9): then
+/// `code` is `kUnnumbered` and `text` is what was printed.
 struct ErrorAnswer {
+  static constexpr int kUnnumbered = -1;
   int code{};
+  std::string text{};
   friend bool operator==(const ErrorAnswer&, const ErrorAnswer&) = default;
 };
 
@@ -347,7 +351,7 @@ using Message =
                  SettingDefinition, SettingDescription, FileRow, Unrecognized>;
 
 BOOST_DESCRIBE_STRUCT(Ok, (), ())
-BOOST_DESCRIBE_STRUCT(ErrorAnswer, (), (code))
+BOOST_DESCRIBE_STRUCT(ErrorAnswer, (), (code, text))
 BOOST_DESCRIBE_STRUCT(FileError, (), (code, line))
 BOOST_DESCRIBE_STRUCT(AlarmRaised, (), (code))
 BOOST_DESCRIBE_STRUCT(BufferState, (), (planner_blocks, rx_bytes))

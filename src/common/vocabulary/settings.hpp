@@ -21,7 +21,7 @@ enum class SettingType : std::uint8_t {
   Bitfield = 1,
   ExclusiveBitfield = 2,  ///< bit 0 enables the rest
   Radio = 3,
-  AxisMask = 4,
+  Axes = 4,  ///< axis mask
   Integer = 5,
   Decimal = 6,
   Text = 7,
@@ -69,20 +69,39 @@ class SettingLimit {
 struct SettingRow {
   int id{};
   int group{};
-  std::string_view name;
-  std::string_view unit;
+  std::string_view name{};
+  std::string_view unit{};
   SettingType type{};
-  std::string_view format;  ///< `$ES`: item names for bit fields and radios, a `#0` mask for numbers, `x(32)` for texts
-  SettingLimit min;
-  SettingLimit max;
-  std::string_view default_value;  ///< as `$$` prints it; a mask over all axes is for three axes
-  bool reboot = false;             ///< acts after a power cycle only
-  bool allow_null = false;         ///< the empty text is accepted; for numbers: 0 is, below `min`
+  /// As `$ES` prints it: item names for bit fields and radios, a `#0` mask for numbers, `x(32)` for texts.
+  std::string_view format{};
+  SettingLimit min{};
+  SettingLimit max{};
+  std::string_view default_value{};  ///< as `$$` prints it; a mask over all axes is for three axes
+  std::string_view description{};    ///< what it does, in our words; empty where the name says it all
+  bool reboot = false;               ///< acts after a power cycle only
+  bool allow_null = false;           ///< the empty text is accepted; for numbers: 0 is, below `min`
   bool per_axis = false;
   BuildOption build = BuildOption::Usual;  ///< `Usual` rows are in the reference build's `$$`
-  std::string_view path;                   ///< Rabbit's name, such as "Homing/Enable"; `id` is -1 if that is all it has
-  std::string_view description;            ///< what it does, in our words; `\n` is written as two characters
+  std::string_view path{};                 ///< Rabbit's name, such as "Homing/Enable"; `id` is -1 if that is all it has
 };
+
+// Marks for rows of the tables, so that they stay one line.
+[[nodiscard]] constexpr SettingRow per_axis(SettingRow row) {
+  row.per_axis = true;
+  return row;
+}
+[[nodiscard]] constexpr SettingRow needs_reboot(SettingRow row) {
+  row.reboot = true;
+  return row;
+}
+[[nodiscard]] constexpr SettingRow allows_null(SettingRow row) {
+  row.allow_null = true;
+  return row;
+}
+[[nodiscard]] constexpr SettingRow named(std::string_view path, SettingRow row) {
+  row.path = path;
+  return row;
+}
 
 /// A group of `$EG`.
 struct SettingGroupRow {

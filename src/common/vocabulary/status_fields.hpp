@@ -1,6 +1,7 @@
 #pragma once
 // The fields of a status report after the state (protocol.md 3.1).
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -62,9 +63,48 @@ struct PluginFieldRow {
 
 [[nodiscard]] std::span<const PluginFieldRow> plugin_field_rows();
 
-/// Grbl 1.1h and Rabbit: state, position, Bf, Ln, FS, Pn, WCO, Ov, A (gnea/grbl report.c).
-[[nodiscard]] std::span<const StatusField> grbl_field_order();
+/// Grbl 1.1h and Rabbit: position, Bf, Ln, FS, Pn, WCO, Ov, A (gnea/grbl report.c 466-654).
+inline constexpr std::array kGrblFieldOrder{
+    StatusField::MachinePosition, StatusField::WorkPosition, StatusField::Buffer, StatusField::LineNumber,
+    StatusField::FeedAndSpeed,    StatusField::Feed,         StatusField::Pins,   StatusField::WorkOffset,
+    StatusField::Overrides,       StatusField::Accessories,
+};
+
 /// grblHAL's order (report.c 1205-1616).
-[[nodiscard]] std::span<const StatusField> grblhal_field_order();
+inline constexpr std::array kGrblHalFieldOrder{
+    StatusField::MachinePosition,
+    StatusField::WorkPosition,
+    StatusField::Buffer,
+    StatusField::LineNumber,
+    StatusField::DistanceToGo,
+    StatusField::FeedAndSpeed,
+    StatusField::Feed,
+    StatusField::ExtraSpindle,
+    StatusField::ActiveSpindle,
+    StatusField::Pins,
+    StatusField::WorkOffset,
+    StatusField::WorkCoordinateSystem,
+    StatusField::Overrides,
+    StatusField::Accessories,
+    StatusField::Scaling,
+    StatusField::AutoReport,
+    StatusField::Mpg,
+    StatusField::Homed,
+    StatusField::Diameter,
+    StatusField::Tool,
+    StatusField::Probe,
+    StatusField::ToolLengthReference,
+    StatusField::InputResult,
+    StatusField::PluginFields,
+    StatusField::FirmwareName,
+    StatusField::CriticalEvent,
+};
+
+[[nodiscard]] constexpr std::span<const StatusField> grbl_field_order() {
+  return kGrblFieldOrder;
+}
+[[nodiscard]] constexpr std::span<const StatusField> grblhal_field_order() {
+  return kGrblHalFieldOrder;
+}
 
 }  // namespace kerf::vocabulary
