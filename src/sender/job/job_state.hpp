@@ -39,10 +39,10 @@ BOOST_DESCRIBE_ENUM(HoldCause, None, FeedHold, Door, ToolChange)
 /// A line that the controller refused.
 struct Refusal {
   std::uint32_t file_line = 0;
-  std::string text;
+  std::string text{};
   int code = 0;
   /// The code in words, the controller's own first.
-  std::string meaning;
+  std::string meaning{};
   bool operator==(const Refusal&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(Refusal, (), (file_line, text, code, meaning))

@@ -26,7 +26,7 @@ BOOST_DESCRIBE_ENUM(ProgramError, Empty, Binary, RealtimeByte)
 struct ProgramFault {
   ProgramError error{};
   std::uint32_t line = 0;
-  std::string excerpt;
+  std::string excerpt{};
   bool operator==(const ProgramFault&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(ProgramFault, (), (error, line, excerpt))

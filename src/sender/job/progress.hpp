@@ -39,7 +39,7 @@ class ProgressMeter {
   /// Everything up to and including `file_line`, which ends at `bytes`, is dealt with.
   void acknowledge(std::uint32_t file_line, std::uint64_t bytes);
   void set_held(Instant now, bool held);
-  /// The last of the file is done.
+  /// The whole file is dealt with.
   void complete();
   /// Progress at `now`; time stands still after `stop`.
   [[nodiscard]] Progress at(Instant now) const;

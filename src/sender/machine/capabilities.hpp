@@ -28,6 +28,8 @@ BOOST_DESCRIBE_STRUCT(AxesFact, (), (count, letters, source))
 struct BuffersFact {
   /// Receive buffer as the controller states it; a sender keeps one byte less in flight (protocol.md 6.1).
   int rx_bytes = 0;
+  /// Bytes that a sender may have unanswered.
+  int rx_usable = 0;
   FactSource rx_source = FactSource::Assumed;
   int planner_blocks = 0;
   FactSource planner_source = FactSource::Assumed;
@@ -36,13 +38,14 @@ struct BuffersFact {
   FactSource line_source = FactSource::Assumed;
   bool operator==(const BuffersFact&) const = default;
 };
-BOOST_DESCRIBE_STRUCT(BuffersFact, (), (rx_bytes, rx_source, planner_blocks, planner_source, line_length, line_source))
+BOOST_DESCRIBE_STRUCT(BuffersFact, (),
+                      (rx_bytes, rx_usable, rx_source, planner_blocks, planner_source, line_length, line_source))
 
 /// An alarm or error code with its meaning, in the controller's words when it has any.
 struct CodeFact {
   int id = 0;
-  std::string title;
-  std::string text;
+  std::string title{};
+  std::string text{};
   FactSource source = FactSource::Assumed;
   bool operator==(const CodeFact&) const = default;
 };
@@ -51,16 +54,16 @@ BOOST_DESCRIBE_STRUCT(CodeFact, (), (id, title, text, source))
 /// A setting: its value as printed by `$$`, and what is known about it. `id` is printed without `$` ("110",
 /// "Homing/Enable").
 struct SettingFact {
-  std::string id;
-  std::optional<std::string> value;
-  std::string name;
-  std::string unit;
-  std::string group;
+  std::string id{};
+  std::optional<std::string> value{};
+  std::string name{};
+  std::string unit{};
+  std::string group{};
   /// Type code of protocol.md 5.2; -1 when unknown.
   int type = -1;
-  std::string format;
-  std::string min;
-  std::string max;
+  std::string format{};
+  std::string min{};
+  std::string max{};
   bool reboot_required = false;
   bool allow_null = false;
   /// Source of the description; the value is always told.
@@ -72,8 +75,8 @@ BOOST_DESCRIBE_STRUCT(SettingFact, (),
 
 /// One other row of `$I`, as `[KEY:value]`.
 struct BuildFact {
-  std::string key;
-  std::string value;
+  std::string key{};
+  std::string value{};
   bool operator==(const BuildFact&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(BuildFact, (), (key, value))
@@ -85,19 +88,19 @@ struct Capabilities {
   vocabulary::Firmware family = vocabulary::Firmware::Unknown;
   FactSource firmware_source = FactSource::Assumed;
   /// "1.1h", "1.6.0", "1.1f".
-  std::string version;
+  std::string version{};
   /// Build date, as in `[VER:1.1f.20260817:]`.
-  std::string build;
-  std::string welcome;
+  std::string build{};
+  std::string welcome{};
   /// The text that the owner stored with `$I=`.
-  std::string user_text;
+  std::string user_text{};
   /// Letters of `[OPT:]`.
-  std::string options;
+  std::string options{};
   /// Tokens of `[NEWOPT:]`, and what Kerf concludes without them.
   std::vector<std::string> capabilities;
   AxesFact axes;
   BuffersFact buffers;
-  std::optional<int> tools;
+  std::optional<int> tools{};
   std::vector<BuildFact> build_rows;
   /// False when a question of the enumeration stayed without an answer.
   bool complete = false;
@@ -105,6 +108,7 @@ struct Capabilities {
   std::vector<CodeFact> errors;
   std::vector<SettingFact> settings;
 
+  /// True for a token with or without a value: has("ATC") for "ATC=1".
   [[nodiscard]] bool has(std::string_view token) const;
   bool operator==(const Capabilities&) const = default;
 };

@@ -12,6 +12,7 @@
 
 #include "common/protocol/message.hpp"
 #include "sender/job/job_state.hpp"
+#include "sender/machine/handshake.hpp"
 #include "sender/machine/snapshot.hpp"
 #include "sender/session/command.hpp"
 #include "sender/streaming/ledger.hpp"
@@ -59,14 +60,7 @@ struct ControllerFound {
 };
 BOOST_DESCRIBE_STRUCT(ControllerFound, (), (sentence))
 
-enum class HandshakeFailure {
-  Silent,           ///< not a byte came
-  NotGrbl,          ///< bytes came, none of them Grbl's
-  LinesUnanswered,  ///< reports come, but no line is answered
-  Restarting,       ///< the controller restarts again and again
-  LinkLost,         ///< closed before it was done
-};
-BOOST_DESCRIBE_ENUM(HandshakeFailure, Silent, NotGrbl, LinesUnanswered, Restarting, LinkLost)
+using machine::HandshakeFailure;
 
 /// No machine that Kerf can work with; the sentence says what was found and what to do.
 struct HandshakeFailed {
@@ -85,9 +79,15 @@ BOOST_DESCRIBE_STRUCT(StatusReported, (), (before, after))
 /// A welcome came in after the handshake. `asked` when Kerf had sent the reset.
 struct ControllerRestarted {
   bool asked = false;
-  std::vector<streaming::OwedLine> lines_lost;
 };
-BOOST_DESCRIBE_STRUCT(ControllerRestarted, (), (asked, lines_lost))
+BOOST_DESCRIBE_STRUCT(ControllerRestarted, (), (asked))
+
+/// Lines sent of which the answers will never come, because the controller dropped them unread: a reset, a flush, a
+/// critical alarm, a lost link.
+struct LinesLost {
+  std::vector<streaming::OwedLine> lines;
+};
+BOOST_DESCRIBE_STRUCT(LinesLost, (), (lines))
 
 struct AlarmRaised {
   int code = 0;
@@ -139,7 +139,7 @@ struct LinkAnswering {};
 BOOST_DESCRIBE_STRUCT(LinkAnswering, (), ())
 
 using Event = std::variant<LineSent, LineReceived, HandshakeNoted, ControllerReset, ControllerBusy, ControllerFound,
-                           HandshakeFailed, StatusReported, ControllerRestarted, AlarmRaised, LineRefused, JobStarted,
-                           JobProgressed, JobEnded, CommandRefused, LinkSilent, LinkAnswering>;
+                           HandshakeFailed, StatusReported, ControllerRestarted, LinesLost, AlarmRaised, LineRefused,
+                           JobStarted, JobProgressed, JobEnded, CommandRefused, LinkSilent, LinkAnswering>;
 
 }  // namespace kerf::session

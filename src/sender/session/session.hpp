@@ -2,41 +2,36 @@
 // A conversation with one controller, from opening the link to closing it. Sans I/O: bytes, commands and the time go
 // in, an outbox and the next deadline come out. The session is a switchboard; the parts it holds decide.
 
-#include <memory>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <boost/describe.hpp>
 
 #include "common/base/time.hpp"
+#include "common/protocol/message_reader.hpp"
+#include "sender/job/job.hpp"
 #include "sender/job/job_state.hpp"
 #include "sender/machine/capabilities.hpp"
+#include "sender/machine/handshake.hpp"
+#include "sender/machine/machine_model.hpp"
 #include "sender/machine/snapshot.hpp"
 #include "sender/session/command.hpp"
 #include "sender/session/event.hpp"
+#include "sender/session/status_poller.hpp"
+#include "sender/streaming/streamer.hpp"
+#include "sender/streaming/window.hpp"
 
 namespace kerf::session {
 
-/// May the handshake soft-reset a machine that it found at rest?
-enum class ResetPolicy {
-  WhenSilentOrIdle,  ///< Idle machines are reset too: half a line that an earlier sender left behind must not be
-                     ///< completed
-  WhenSilent,        ///< only when nothing answers
-};
-BOOST_DESCRIBE_ENUM(ResetPolicy, WhenSilentOrIdle, WhenSilent)
-
-/// What the host knows about the link.
-struct LinkTraits {
-  /// Baud rate of a real serial line; empty where the rate means nothing (TCP, native USB, pty).
-  std::optional<int> baud;
-  /// Bytes wait behind each other in the network, so the window is small (protocol.md 11, rule 12).
-  bool network = false;
-};
+using machine::ResetPolicy;
 
 struct SessionOptions {
-  LinkTraits link;
+  /// What the host knows about the link.
+  streaming::LinkPace link;
   ResetPolicy reset_policy = ResetPolicy::WhenSilentOrIdle;
   /// Ask for the enumerations (`$EA` …) where the controller has them; `false` makes connecting faster.
   bool enumerate = true;
@@ -63,9 +58,6 @@ struct Outbox {
 class Session {
  public:
   explicit Session(SessionOptions options = {});
-  ~Session();
-  Session(Session&&) noexcept;
-  Session& operator=(Session&&) noexcept;
 
   void on_open(Instant now);
   void on_bytes(Instant now, std::string_view bytes);
@@ -77,17 +69,65 @@ class Session {
   [[nodiscard]] Outbox take_outbox();
 
   [[nodiscard]] SessionPhase phase() const;
-  [[nodiscard]] const machine::Snapshot& snapshot() const;
-  [[nodiscard]] const machine::Capabilities& capabilities() const;
+  [[nodiscard]] const machine::Snapshot& snapshot() const { return model_.snapshot(); }
+  [[nodiscard]] const machine::Capabilities& capabilities() const { return handshake_.capabilities(); }
   /// The job under way, or the last one; empty before the first.
-  [[nodiscard]] const std::optional<job::JobState>& job() const;
-  /// Bytes sent that the controller has not answered for, and the most that may be.
-  [[nodiscard]] std::size_t bytes_in_flight() const;
-  [[nodiscard]] std::size_t window_bytes() const;
+  [[nodiscard]] const std::optional<job::JobState>& job() const { return job_state_; }
+  /// Every line sent, answered and lost so far.
+  [[nodiscard]] const streaming::Ledger& ledger() const { return streamer_.ledger(); }
+  [[nodiscard]] std::size_t bytes_in_flight() const { return streamer_.ledger().bytes_in_flight(); }
+  [[nodiscard]] std::size_t window_bytes() const { return streamer_.window(); }
 
  private:
-  class Switchboard;
-  std::unique_ptr<Switchboard> board_;
+  void handle(Instant now, const protocol::ReceivedMessage& received);
+  void on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code);
+  void on_report(Instant now, vocabulary::MachineState before);
+  void on_welcome(Instant now);
+  void on_alarm(Instant now, int code);
+
+  void obey(Instant now, const StartJob& command);
+  void obey(Instant now, const HoldJob& command);
+  void obey(Instant now, const ResumeJob& command);
+  void obey(Instant now, const StopJob& command);
+  void obey(Instant now, const AbortJob& command);
+  void obey(Instant now, const SendLine& command);
+  void obey(Instant now, const SendRealtime& command);
+  void obey(Instant now, const Unlock& command);
+  void obey(Instant now, const Home& command);
+  void obey(Instant now, const Jog& command);
+  void obey(Instant now, const CancelJog& command);
+  void obey(Instant now, const SoftReset& command);
+  [[nodiscard]] std::optional<Refused> why_no_line(std::string_view text) const;
+  [[nodiscard]] std::optional<Refused> why_no_job() const;
+  [[nodiscard]] std::size_t longest_line_taken() const;
+  void refuse(Refused reason, std::string detail = {});
+
+  void settle_everything(Instant now);
+  void follow_handshake(Instant now);
+  void follow_job(Instant now);
+  void obey_handshake(Instant now, const machine::HandshakeOrder& order);
+  void obey_job(Instant now, job::JobOrder order);
+  void pump(Instant now);
+  void poll(Instant now);
+  void reset_controller(Instant now);
+  void strike_out();
+  void tell(Event event) { outbox_.events.push_back(std::move(event)); }
+  void send_byte(vocabulary::Realtime byte) { outbox_.realtime += static_cast<char>(byte); }
+  [[nodiscard]] bool is_ready() const { return handshake_.stage() == machine::HandshakeStage::Ready; }
+  [[nodiscard]] bool has_job() const { return job_ && !job::is_final(job_->state().phase); }
+
+  SessionOptions options_;
+  Outbox outbox_;
+  bool open_ = false;
+  protocol::MessageReader reader_;
+  machine::MachineModel model_;
+  machine::Handshake handshake_;
+  streaming::Streamer streamer_;
+  StatusPoller poller_;
+  std::optional<job::Job> job_;
+  std::optional<job::JobState> job_state_;
+  /// A soft reset is out and its welcome has not come; until then answers mean nothing (protocol.md 4.4).
+  std::optional<Instant> reset_pending_until_;
 };
 
 }  // namespace kerf::session

@@ -1,0 +1,71 @@
+#include "sender/job/wire_form.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <iterator>
+
+#include "common/base/text.hpp"
+
+namespace kerf::job {
+namespace {
+
+bool is_plain(char letter) {
+  const bool printable = letter >= ' ' && letter <= '~';
+  return printable && letter != '?' && letter != '!' && letter != '~';
+}
+
+bool is_for_the_operator(std::string_view comment) {
+  constexpr std::array<std::string_view, 3> kStarts{"MSG,", "PRINT,", "DEBUG,"};
+  return std::ranges::any_of(kStarts,
+                             [comment](auto start) { return base::starts_with_ignoring_case(comment, start); });
+}
+
+/// Takes the comment that starts at `at`; gives where the line goes on.
+std::size_t append_comment(std::string& out, std::string_view line, std::size_t at, WireForm form) {
+  const std::size_t close = line.find(')', at);
+  // An unclosed comment prints nothing and hides the rest of the line.
+  if (close == std::string_view::npos) return line.size();
+  const std::string_view comment = line.substr(at + 1, close - at - 1);
+  if (form.keeps_messages && is_for_the_operator(base::trim(comment))) {
+    out += '(';
+    for (const char letter : base::trim(comment)) {
+      if (is_plain(letter)) out += letter;
+    }
+    out += ')';
+  }
+  return close + 1;
+}
+
+void append_words(std::string& out, std::string_view line, WireForm form) {
+  for (std::size_t at = 0; at < line.size();) {
+    const char letter = line[at];
+    if (letter == ';') return;
+    if (letter == '(') {
+      at = append_comment(out, line, at, form);
+      continue;
+    }
+    if (letter != ' ' && is_plain(letter)) out += letter;
+    ++at;
+  }
+}
+
+}  // namespace
+
+WireForm wire_form_of(const vocabulary::Dialect& dialect) {
+  return {.keeps_messages = dialect.comment_rule == vocabulary::CommentRule::ParsedForMessages,
+          .keeps_percent = dialect.percent_rule != vocabulary::PercentRule::Error};
+}
+
+void append_wire_form(std::string& out, std::string_view line, WireForm form) {
+  const std::string_view trimmed = base::trim(line);
+  if (trimmed.starts_with('$')) {
+    std::ranges::copy_if(trimmed, std::back_inserter(out), is_plain);
+    return;
+  }
+  const std::size_t before = out.size();
+  append_words(out, trimmed, form);
+  if (!form.keeps_percent && std::string_view{out}.substr(before) == "%") out.resize(before);
+}
+
+}  // namespace kerf::job

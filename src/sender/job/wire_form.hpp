@@ -1,0 +1,25 @@
+#pragma once
+// What of a file's line goes to the wire.
+
+#include <string>
+#include <string_view>
+
+#include "common/vocabulary/dialect.hpp"
+
+namespace kerf::job {
+
+/// What a controller can use besides the words themselves.
+struct WireForm {
+  /// `(MSG,…)`, `(PRINT,…)` and `(DEBUG,…)` are for the operator and come back as messages.
+  bool keeps_messages = false;
+  /// A lone `%` is understood; Grbl answers it with an error, so it is left out there (protocol.md 6.3).
+  bool keeps_percent = false;
+};
+
+[[nodiscard]] WireForm wire_form_of(const vocabulary::Dialect& dialect);
+
+/// Appends `line` without blanks, comments and bytes that are no ASCII text: shorter, and the same to every parser.
+/// Nothing is appended when nothing is left. Lines that begin with `$` keep their inner blanks.
+void append_wire_form(std::string& out, std::string_view line, WireForm form);
+
+}  // namespace kerf::job

@@ -1,0 +1,58 @@
+#pragma once
+// Gathers what a controller says about itself into Capabilities.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/protocol/message.hpp"
+#include "common/vocabulary/dialect.hpp"
+#include "sender/machine/capabilities.hpp"
+#include "sender/machine/lexicon.hpp"
+
+namespace kerf::machine {
+
+/// Fed with every message of a handshake; answers what is known so far. The firmware family follows from the most
+/// specific evidence: `[FIRMWARE:]` and `[NEWOPT:]`, then the welcome, then the shape of `[VER:]` and `[OPT:]`
+/// (protocol.md 1.6).
+class CapabilityCollector {
+ public:
+  void fold(const protocol::Message& message);
+  void forget();
+
+  [[nodiscard]] vocabulary::Firmware family() const;
+  [[nodiscard]] const vocabulary::Dialect& dialect() const { return vocabulary::dialect_of(family()); }
+  [[nodiscard]] bool has_token(std::string_view token) const;
+  [[nodiscard]] const Lexicon& lexicon() const { return lexicon_; }
+
+  [[nodiscard]] Capabilities capabilities(bool complete) const;
+
+ private:
+  [[nodiscard]] FactSource family_source() const;
+  [[nodiscard]] AxesFact axes() const;
+  [[nodiscard]] BuffersFact buffers() const;
+  [[nodiscard]] std::vector<std::string> tokens() const;
+  [[nodiscard]] std::vector<SettingFact> settings() const;
+  [[nodiscard]] SettingFact describe_setting(const std::string& id) const;
+
+  std::optional<protocol::Welcome> welcome_;
+  std::optional<protocol::Version> version_;
+  std::optional<protocol::BuildOptions> options_;
+  std::optional<protocol::AxisNames> axis_names_;
+  std::optional<protocol::NewOptions> new_options_;
+  std::string firmware_name_;
+  std::vector<BuildFact> build_rows_;
+  std::map<int, std::string> groups_;
+  std::map<int, protocol::SettingDefinition> definitions_;
+  /// In the order in which `$$` lists them.
+  std::vector<protocol::SettingValue> values_;
+  /// Axes of the last position seen, where `$I` does not tell.
+  int axes_seen_ = 0;
+  Lexicon lexicon_;
+};
+
+/// "grblHAL 1.1f (build 20260817), axes XYZ, 1024 bytes of receive buffer, 100 planner blocks"
+[[nodiscard]] std::string summary_of(const Capabilities& capabilities);
+
+}  // namespace kerf::machine

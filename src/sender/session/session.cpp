@@ -1,0 +1,310 @@
+#include "sender/session/session.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "common/base/overloaded.hpp"
+#include "sender/machine/lexicon.hpp"
+
+namespace kerf::session {
+namespace {
+
+using namespace std::chrono_literals;
+using machine::HandshakeStage;
+using streaming::Purpose;
+using vocabulary::MachineState;
+using vocabulary::Realtime;
+
+/// Before anything is known: less than the smallest receive buffer, one line at a time.
+constexpr std::size_t kCautiousWindow = 80;
+constexpr Duration kResetPatience = 3s;
+/// A report is about 100 bytes: 5 a second take a tenth of 115200 baud and leave the rest to the job.
+constexpr Duration kPollSerial = 200ms;
+constexpr Duration kPollFast = 100ms;
+constexpr int kFastBaud = 230400;
+/// Its answer proves that all motion has ended, because a dwell waits for the planner (protocol.md 6.5).
+constexpr std::string_view kSyncLine = "G4P0";
+
+Duration poll_period(const streaming::LinkPace& link) {
+  return link.baud && *link.baud < kFastBaud ? kPollSerial : kPollFast;
+}
+
+streaming::SoloPolicy solo_policy_of(vocabulary::Firmware firmware) {
+  switch (firmware) {
+    // Neither loses received bytes while it stores (protocol.md 6.5, 10 row 31).
+    case vocabulary::Firmware::GrblHal:
+    case vocabulary::Firmware::Rabbit: return streaming::SoloPolicy::DollarLines;
+    default: return streaming::SoloPolicy::StoredWritesToo;
+  }
+}
+
+}  // namespace
+
+Session::Session(SessionOptions options) : options_(options), handshake_(options.reset_policy, options.enumerate) {
+  streamer_.configure(kCautiousWindow, streaming::SoloPolicy::EveryLine);
+}
+
+void Session::on_open(Instant now) {
+  open_ = true;
+  reader_.reset();
+  model_.forget();
+  streamer_.configure(kCautiousWindow, streaming::SoloPolicy::EveryLine);
+  streamer_.pause(false);
+  reset_pending_until_.reset();
+  poller_.stop();
+  handshake_.on_open(now);
+  settle_everything(now);
+}
+
+void Session::on_closed(Instant now, LinkLoss) {
+  if (!open_) return;
+  open_ = false;
+  strike_out();
+  for (const Purpose purpose : {Purpose::Operator, Purpose::Question, Purpose::ClearLatch, Purpose::JobSync}) {
+    streamer_.drop_queued(purpose);
+  }
+  poller_.stop();
+  reset_pending_until_.reset();
+  handshake_.on_closed();
+  if (has_job()) job_->on_link_closed(now);
+  settle_everything(now);
+  outbox_.realtime.clear();
+  outbox_.lines.clear();
+}
+
+void Session::on_bytes(Instant now, std::string_view bytes) {
+  if (!open_) return;
+  for (const auto& received : reader_.read(bytes)) {
+    handle(now, received);
+    settle_everything(now);
+  }
+}
+
+void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
+  const MachineState before = snapshot().state;
+  model_.fold(now, received.message);
+  std::optional<streaming::OwedLine> answers;
+  if (protocol::is_answer(received.message) && !reset_pending_until_) answers = streamer_.settle();
+  tell(LineReceived{.message = received.message, .raw = received.raw, .answers = answers});
+  std::visit(base::Overloaded{
+                 [&](const protocol::Ok&) { on_answer(now, answers, 0); },
+                 [&](const protocol::ErrorAnswer& error) { on_answer(now, answers, error.code); },
+                 [&](const protocol::StatusReport&) { on_report(now, before); },
+                 [&](const protocol::Welcome&) { on_welcome(now); },
+                 [&](const protocol::AlarmRaised& alarm) { on_alarm(now, alarm.code); },
+                 [](const auto&) {},
+             },
+             received.message);
+  handshake_.on_message(now, received.message, received.raw, snapshot());
+}
+
+void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code) {
+  if (!line) return;
+  if (error_code == 0) model_.on_line_accepted(line->text);
+  std::string meaning;
+  if (error_code != 0) {
+    const auto& known = handshake_.collector();
+    meaning = sentence_of(known.lexicon().error(known.dialect(), error_code));
+  }
+  bool latched_repeat = false;
+  switch (line->purpose) {
+    case Purpose::JobLine:
+      if (!has_job()) break;
+      latched_repeat = job_->on_answer(now, {.file_line = line->file_line,
+                                             .file_offset_after = line->file_offset_after,
+                                             .text = line->text,
+                                             .error_code = error_code,
+                                             .meaning = meaning});
+      break;
+    case Purpose::JobSync:
+      if (has_job()) job_->on_sync_answered(now);
+      break;
+    case Purpose::Question: handshake_.on_answer(now, error_code); break;
+    case Purpose::ClearLatch:
+    case Purpose::Operator: break;
+  }
+  if (error_code == 0) return;
+  tell(LineRefused{
+      .purpose = line->purpose,
+      .refusal = {.file_line = line->file_line, .text = line->text, .code = error_code, .meaning = std::move(meaning)},
+      .latched_repeat = latched_repeat});
+  // Otherwise the next line would be refused on behalf of this one (protocol.md 6.4).
+  if (line->purpose == Purpose::Operator && handshake_.collector().dialect().error_latch) {
+    streamer_.enqueue(Purpose::ClearLatch, "");
+  }
+}
+
+void Session::on_report(Instant now, MachineState before) {
+  if (poller_.on_report(now, snapshot().auto_report_ms > 0)) tell(LinkAnswering{});
+  tell(StatusReported{.before = before, .after = snapshot().state});
+  if (!has_job()) return;
+  job_->on_snapshot(now, snapshot());
+  if (has_job()) tell(JobProgressed{job_->state()});
+}
+
+void Session::on_welcome(Instant now) {
+  const bool asked = reset_pending_until_.has_value();
+  reset_pending_until_.reset();
+  streamer_.pause(false);
+  strike_out();
+  if (has_job()) job_->on_welcome(now);
+  if (!is_ready()) return;
+  tell(ControllerRestarted{.asked = asked});
+  poller_.stop();
+  handshake_.restart(now, asked);
+}
+
+void Session::on_alarm(Instant now, int code) {
+  const auto& known = handshake_.collector();
+  const auto fact = known.lexicon().alarm(known.dialect(), code);
+  tell(AlarmRaised{.code = code, .title = fact.title, .text = fact.text});
+  if (has_job()) job_->on_alarm(now, code, sentence_of(fact));
+  // A critical alarm reads no more lines until the reset, and that drops them (protocol.md 4.4).
+  if (snapshot().reset_required) strike_out();
+}
+
+void Session::strike_out() {
+  auto lost = streamer_.strike_out();
+  if (lost.empty()) return;
+  const auto is_job_line = [](const streaming::OwedLine& line) { return line.purpose == Purpose::JobLine; };
+  const auto first = std::ranges::find_if(lost, is_job_line);
+  if (has_job() && first != lost.end()) {
+    job_->on_lines_lost(first->file_line, static_cast<std::uint32_t>(std::ranges::count_if(lost, is_job_line)));
+  }
+  tell(LinesLost{std::move(lost)});
+}
+
+void Session::reset_controller(Instant now) {
+  strike_out();
+  streamer_.pause(true);
+  reset_pending_until_ = now + kResetPatience;
+  send_byte(Realtime::SoftReset);
+}
+
+void Session::settle_everything(Instant now) {
+  follow_handshake(now);
+  pump(now);
+  follow_job(now);
+  pump(now);
+}
+
+void Session::follow_handshake(Instant now) {
+  for (const auto& order : handshake_.take_orders()) obey_handshake(now, order);
+}
+
+void Session::obey_handshake(Instant now, const machine::HandshakeOrder& order) {
+  std::visit(base::Overloaded{
+                 [&](const machine::SendByte& send) {
+                   if (send.byte == static_cast<std::uint8_t>(Realtime::SoftReset))
+                     reset_controller(now);
+                   else
+                     outbox_.realtime += static_cast<char>(send.byte);
+                 },
+                 [&](const machine::AskLine& ask) { streamer_.enqueue(Purpose::Question, ask.text); },
+                 [&](const machine::ForgetQuestions&) {
+                   streamer_.drop_queued(Purpose::Question);
+                   strike_out();
+                 },
+                 [&](const machine::Remark& remark) { tell(HandshakeNoted{remark.sentence}); },
+                 [&](const machine::ResetNotice& notice) { tell(ControllerReset{notice.reason}); },
+                 [&](const machine::BusyNotice& busy) {
+                   tell(ControllerBusy{.state = busy.state, .pendant = busy.pendant, .sentence = busy.sentence});
+                 },
+                 [&](const machine::Success& success) {
+                   model_.speak(handshake_.collector().dialect());
+                   const auto usable = static_cast<std::size_t>(std::max(capabilities().buffers.rx_usable, 1));
+                   streamer_.configure(streaming::window_bytes(usable, options_.link),
+                                       solo_policy_of(capabilities().family));
+                   poller_.start(now, poll_period(options_.link));
+                   tell(ControllerFound{success.sentence});
+                 },
+                 [&](const machine::Failure& failure) {
+                   tell(HandshakeFailed{.failure = failure.failure, .sentence = failure.sentence});
+                 },
+             },
+             order);
+}
+
+void Session::follow_job(Instant now) {
+  if (!job_) return;
+  if (has_job() && streamer_.source_exhausted() && streamer_.done_with(Purpose::JobLine)) job_->on_lines_answered(now);
+  for (const job::JobOrder order : job_->take_orders()) obey_job(now, order);
+  const bool was_final = job_state_ && job::is_final(job_state_->phase);
+  const bool phase_changed = job_state_ && job_state_->phase != job_->state().phase;
+  job_state_ = job_->state();
+  if (was_final || !phase_changed) return;
+  if (has_job())
+    tell(JobProgressed{*job_state_});
+  else
+    tell(JobEnded{*job_state_});
+}
+
+void Session::obey_job(Instant now, job::JobOrder order) {
+  switch (order) {
+    case job::JobOrder::StopFeeding:
+      streamer_.stop_feeding();
+      streamer_.drop_queued(Purpose::JobSync);
+      return;
+    case job::JobOrder::SendSync: streamer_.enqueue(Purpose::JobSync, std::string{kSyncLine}); return;
+    case job::JobOrder::ClearLatch: streamer_.enqueue(Purpose::ClearLatch, ""); return;
+    case job::JobOrder::FeedHold: send_byte(Realtime::FeedHold); return;
+    case job::JobOrder::CycleStart: send_byte(Realtime::CycleStart); return;
+    case job::JobOrder::SoftReset: reset_controller(now); return;
+  }
+}
+
+void Session::pump(Instant now) {
+  if (!open_ || snapshot().pendant_in_control) return;
+  for (auto& line : streamer_.pump(now, outbox_.lines)) {
+    tell(LineSent{.purpose = line.purpose, .file_line = line.file_line, .text = std::move(line.text)});
+  }
+}
+
+void Session::poll(Instant now) {
+  if (!is_ready() || snapshot().pendant_in_control) return;
+  if (poller_.is_due(now)) {
+    send_byte(Realtime::StatusQuery);
+    poller_.on_asked(now);
+  }
+  const auto silent_for_s = poller_.take_silence(now);
+  // Grbl answers no question while it homes.
+  const bool homes = !streamer_.ledger().empty() && streamer_.ledger().oldest().text.starts_with("$H");
+  if (silent_for_s && !homes) tell(LinkSilent{*silent_for_s});
+}
+
+void Session::advance_to(Instant now) {
+  if (!open_) return;
+  handshake_.advance_to(now, snapshot());
+  if (has_job()) job_->advance_to(now);
+  if (reset_pending_until_ && now >= *reset_pending_until_) {
+    reset_pending_until_.reset();
+    streamer_.pause(false);
+  }
+  poll(now);
+  settle_everything(now);
+}
+
+Instant Session::next_deadline() const {
+  if (!open_) return kNever;
+  Instant deadline = std::min(handshake_.next_deadline(), reset_pending_until_.value_or(kNever));
+  if (has_job()) deadline = std::min(deadline, job_->next_deadline());
+  if (is_ready() && !snapshot().pendant_in_control) deadline = std::min(deadline, poller_.next_deadline());
+  return deadline;
+}
+
+Outbox Session::take_outbox() {
+  return std::exchange(outbox_, {});
+}
+
+SessionPhase Session::phase() const {
+  switch (handshake_.stage()) {
+    case HandshakeStage::Closed: return SessionPhase::Closed;
+    case HandshakeStage::PendantWait:
+    case HandshakeStage::BusyWait: return SessionPhase::Waiting;
+    case HandshakeStage::Ready: return SessionPhase::Ready;
+    case HandshakeStage::Failed: return SessionPhase::Failed;
+    default: return SessionPhase::Connecting;
+  }
+}
+
+}  // namespace kerf::session

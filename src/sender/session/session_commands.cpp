@@ -1,0 +1,180 @@
+// Commands of the operator: whether they can be obeyed, and by whom.
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "common/base/text.hpp"
+#include "sender/job/wire_form.hpp"
+#include "sender/machine/rest.hpp"
+#include "sender/session/program_lines.hpp"
+#include "sender/session/refusals.hpp"
+#include "sender/session/session.hpp"
+
+namespace kerf::session {
+namespace {
+
+using streaming::Purpose;
+using vocabulary::MachineState;
+using vocabulary::Realtime;
+
+}  // namespace
+
+void Session::submit(Instant now, const Command& command) {
+  if (!open_) {
+    refuse(Refused::NotConnected);
+    return;
+  }
+  std::visit([&](const auto& known) { obey(now, known); }, command);
+  settle_everything(now);
+}
+
+void Session::refuse(Refused reason, std::string detail) {
+  tell(CommandRefused{.reason = reason, .sentence = detail.empty() ? sentence_of(reason) : std::move(detail)});
+}
+
+std::size_t Session::longest_line_taken() const {
+  const auto& buffers = capabilities().buffers;
+  return static_cast<std::size_t>(std::max(1, std::min(buffers.line_length, buffers.rx_usable - 1)));
+}
+
+std::optional<Refused> Session::why_no_job() const {
+  if (!is_ready()) return Refused::NotIdentified;
+  if (snapshot().pendant_in_control) return Refused::PendantInControl;
+  if (has_job()) return Refused::JobUnderWay;
+  if (snapshot().state == MachineState::Alarm) return Refused::MachineInAlarm;
+  const bool idle = snapshot().state == MachineState::Idle || snapshot().state == MachineState::Check;
+  if (!idle || !snapshot().controller_file.empty()) return Refused::MachineNotIdle;
+  return std::nullopt;
+}
+
+void Session::obey(Instant now, const StartJob& command) {
+  if (const auto reason = why_no_job()) {
+    refuse(*reason);
+    return;
+  }
+  const auto& dialect = handshake_.collector().dialect();
+  const auto form = job::wire_form_of(dialect);
+  const auto longest = command.program->longest_line(form.keeps_messages);
+  if (longest.length > longest_line_taken()) {
+    refuse(Refused::LineTooLong, command.program->name() + ", line " + std::to_string(longest.number) + " has " +
+                                     std::to_string(longest.length) + " characters and this controller takes " +
+                                     std::to_string(longest_line_taken()) + ": split it in the CAM program.");
+    return;
+  }
+  if (dialect.error_latch) streamer_.enqueue(Purpose::ClearLatch, "");
+  streamer_.feed_from(std::make_unique<ProgramLines>(command.program, form));
+  job_.emplace(now, *command.program, dialect.error_latch);
+  job_state_ = job_->state();
+  tell(JobStarted{command.program->name()});
+}
+
+void Session::obey(Instant now, const HoldJob&) {
+  if (has_job())
+    job_->hold(now);
+  else
+    send_byte(Realtime::FeedHold);
+}
+
+void Session::obey(Instant now, const ResumeJob&) {
+  if (!machine::can_resume(snapshot()) || (has_job() && !job_->can_resume())) {
+    refuse(Refused::NotAtRest);
+    return;
+  }
+  if (has_job())
+    job_->resume(now);
+  else
+    send_byte(Realtime::CycleStart);
+}
+
+void Session::obey(Instant now, const StopJob&) {
+  if (has_job())
+    job_->stop(now);
+  else
+    refuse(Refused::NoJob);
+}
+
+void Session::obey(Instant now, const AbortJob&) {
+  if (has_job())
+    job_->abort(now);
+  else
+    obey(now, SoftReset{});
+}
+
+std::optional<Refused> Session::why_no_line(std::string_view text) const {
+  if (!is_ready()) return Refused::NotIdentified;
+  if (snapshot().pendant_in_control) return Refused::PendantInControl;
+  if (has_job()) return Refused::JobUnderWay;
+  if (snapshot().reset_required) return Refused::MachineInAlarm;
+  if (holds_realtime_bytes(text)) return Refused::RealtimeInLine;
+  if (crashes_controller(text)) return Refused::NeverSent;
+  if (text.size() > longest_line_taken()) return Refused::LineTooLong;
+  return std::nullopt;
+}
+
+void Session::obey(Instant, const SendLine& command) {
+  if (const auto reason = why_no_line(command.text))
+    refuse(*reason);
+  else
+    streamer_.enqueue(Purpose::Operator, command.text);
+}
+
+void Session::obey(Instant now, const Unlock&) {
+  obey(now, SendLine{"$X"});
+}
+
+void Session::obey(Instant now, const Home&) {
+  obey(now, SendLine{"$H"});
+}
+
+void Session::obey(Instant now, const Jog& command) {
+  obey(now, SendLine{"$J=" + command.words});
+}
+
+void Session::obey(Instant, const CancelJog&) {
+  if (has_job()) {
+    refuse(Refused::JobUnderWay);
+    return;
+  }
+  send_byte(Realtime::JogCancel);
+  // grblHAL drops every unread line with it (protocol.md 4.4).
+  if (handshake_.collector().dialect().jog_cancel_flushes_rx) strike_out();
+}
+
+void Session::obey(Instant now, const SoftReset&) {
+  if (has_job()) {
+    job_->abort(now);
+    return;
+  }
+  reset_controller(now);
+  handshake_.on_operator_reset(now);
+}
+
+void Session::obey(Instant now, const SendRealtime& command) {
+  if (is_never_sent(command.byte)) {
+    refuse(Refused::NeverSent);
+    return;
+  }
+  switch (static_cast<Realtime>(command.byte)) {
+    case Realtime::SoftReset: obey(now, SoftReset{}); return;
+    case Realtime::FeedHold: obey(now, HoldJob{}); return;
+    case Realtime::JogCancel: obey(now, CancelJog{}); return;
+    case Realtime::CycleStart:
+      if (has_job())
+        obey(now, ResumeJob{});
+      else
+        send_byte(Realtime::CycleStart);
+      return;
+    case Realtime::Stop:
+      // It empties the receive buffer (protocol.md 2): StopJob does the same and keeps the account.
+      if (has_job())
+        job_->stop(now);
+      else
+        send_byte(Realtime::Stop);
+      return;
+    default: outbox_.realtime += static_cast<char>(command.byte); return;
+  }
+}
+
+}  // namespace kerf::session

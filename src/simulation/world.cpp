@@ -1,0 +1,181 @@
+#include "simulation/world.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <utility>
+
+#include "common/base/text.hpp"
+#include "firmware/personality.hpp"
+
+namespace kerf::simulation {
+namespace {
+
+using namespace std::chrono_literals;
+using session::SessionPhase;
+
+constexpr Duration kConnectLimit = 60s;
+
+}  // namespace
+
+WorldOptions serial_world(vocabulary::Firmware firmware, int baud) {
+  WorldOptions options;
+  options.firmware = firmware;
+  options.wire.baud = baud;
+  options.session.link.baud = baud;
+  return options;
+}
+
+WorldOptions network_world(vocabulary::Firmware firmware, Duration latency) {
+  WorldOptions options;
+  options.firmware = firmware;
+  options.wire.latency = latency;
+  options.session.link.network = true;
+  return options;
+}
+
+World::World(const WorldOptions& options)
+    : options_(options),
+      controller_(
+          std::make_unique<firmware::VirtualController>(firmware::personality_of(options.firmware), options.stored)),
+      session_(options.session),
+      to_controller_(options.wire, WireGrain::Byte),
+      from_controller_(options.wire, WireGrain::Line) {
+  controller_->power_on(now_);
+  // Nobody listens yet: what a controller says before the link is open is lost.
+  const Instant opened_at = now_ + options.head_start;
+  while (controller_->next_deadline() <= opened_at) {
+    now_ = std::max(now_, controller_->next_deadline());
+    controller_->advance_to(now_);
+  }
+  now_ = opened_at;
+  controller_->advance_to(now_);
+}
+
+void World::open() {
+  if (options_.opening_resets) {
+    restart_controller();
+  } else {
+    static_cast<void>(controller_->take_outbox());
+  }
+  linked_ = true;
+  session_.on_open(now_);
+  settle();
+}
+
+void World::restart_controller() {
+  controller_ =
+      std::make_unique<firmware::VirtualController>(firmware::personality_of(options_.firmware), controller_->stored());
+  controller_->power_on(now_);
+  settle();
+}
+
+void World::cut_link() {
+  linked_ = false;
+  to_controller_.cut();
+  from_controller_.cut();
+  session_.on_closed(now_, session::LinkLoss::Unplugged);
+  settle();
+}
+
+void World::submit(const session::Command& command) {
+  session_.submit(now_, command);
+  settle();
+}
+
+void World::touch(const firmware::WorkcellEvent& event) {
+  controller_->submit(now_, event);
+  settle();
+}
+
+void World::inject_to_controller(std::string_view bytes) {
+  controller_->on_bytes(now_, bytes);
+  settle();
+}
+
+void World::inject_to_session(std::string_view bytes) {
+  session_.on_bytes(now_, bytes);
+  settle();
+}
+
+void World::record(Direction direction, const std::string& bytes) {
+  if (options_.keeps_transcript) transcript_.push_back({.at = now_, .direction = direction, .bytes = bytes});
+}
+
+void World::settle() {
+  auto out = session_.take_outbox();
+  if (linked_) {
+    to_controller_.send(now_, out.realtime);
+    to_controller_.send(now_, out.lines);
+  }
+  events_.insert(events_.end(), std::make_move_iterator(out.events.begin()), std::make_move_iterator(out.events.end()));
+  most_in_flight_ = std::max(most_in_flight_, session_.bytes_in_flight());
+  const std::string said = controller_->take_outbox();
+  if (linked_) from_controller_.send(now_, said);
+}
+
+void World::move_bytes() {
+  if (const std::string bytes = to_controller_.take_arrived(now_); !bytes.empty()) {
+    record(Direction::ToController, bytes);
+    controller_->on_bytes(now_, bytes);
+  }
+  if (const std::string bytes = from_controller_.take_arrived(now_); !bytes.empty()) {
+    record(Direction::FromController, bytes);
+    session_.on_bytes(now_, bytes);
+  }
+}
+
+Instant World::next_deadline() const {
+  return std::min({session_.next_deadline(), controller_->next_deadline(), to_controller_.next_deadline(),
+                   from_controller_.next_deadline()});
+}
+
+bool World::step(Instant limit) {
+  const Instant next = next_deadline();
+  if (next > limit) {
+    // Not kNever, so that an endless wait does not end the clock.
+    now_ = std::max(now_, limit);
+    return false;
+  }
+  now_ = std::max(now_, next);
+  controller_->advance_to(now_);
+  move_bytes();
+  if (session_.next_deadline() <= now_) session_.advance_to(now_);
+  settle();
+  return true;
+}
+
+void World::run_for(Duration time) {
+  const Instant end = now_ + time;
+  while (step(end)) {
+  }
+}
+
+std::string World::transcript_text() const {
+  std::string text;
+  for (const auto& entry : transcript_) {
+    base::append_fixed(text, base::to_seconds(entry.at), 6);
+    text += entry.direction == Direction::ToController ? " > " : " < ";
+    base::append_escaped(text, entry.bytes);
+    text += '\n';
+  }
+  return text;
+}
+
+std::optional<job::JobState> run_job(World& world, std::shared_ptr<const job::Program> program, Duration limit) {
+  if (world.session().phase() == SessionPhase::Closed) world.open();
+  const auto found_or_failed = [](const World& running) {
+    const auto phase = running.session().phase();
+    return phase == SessionPhase::Ready || phase == SessionPhase::Failed;
+  };
+  if (!world.run_until(found_or_failed, kConnectLimit) || world.session().phase() != SessionPhase::Ready) {
+    return std::nullopt;
+  }
+  world.submit(session::StartJob{std::move(program)});
+  if (!world.session().job()) return std::nullopt;
+  const auto over = [](const World& running) { return job::is_final(running.session().job()->phase); };
+  static_cast<void>(world.run_until(over, limit));
+  return world.session().job();
+}
+
+}  // namespace kerf::simulation

@@ -1,0 +1,115 @@
+#pragma once
+// Both sides of the wire on one virtual clock.
+
+#include <concepts>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "firmware/stored_state.hpp"
+#include "firmware/virtual_controller.hpp"
+#include "firmware/workcell.hpp"
+#include "sender/session/session.hpp"
+#include "simulation/wire.hpp"
+
+namespace kerf::simulation {
+
+/// What stands in a world.
+struct WorldOptions {
+  vocabulary::Firmware firmware = vocabulary::Firmware::GrblHal;
+  firmware::StoredState stored;
+  WireTiming wire;
+  session::SessionOptions session;
+  /// Opening the port restarts the controller, as DTR does to an Uno.
+  bool opening_resets = false;
+  /// How long the controller is up before the link is opened.
+  Duration head_start{};
+  bool keeps_transcript = true;
+};
+
+/// A serial line of `baud`, on both sides: the wire paces, the session caps its window.
+[[nodiscard]] WorldOptions serial_world(vocabulary::Firmware firmware, int baud);
+/// A network with `latency` one way.
+[[nodiscard]] WorldOptions network_world(vocabulary::Firmware firmware, Duration latency);
+
+enum class Direction : std::uint8_t { ToController, FromController };
+
+/// Bytes as they arrived at the far end, and when.
+struct TranscriptEntry {
+  Instant at{};
+  Direction direction{};
+  std::string bytes;
+  friend bool operator==(const TranscriptEntry&, const TranscriptEntry&) = default;
+};
+
+/// A session, a virtual controller, and two wires. Time jumps from one deadline to the next; the same inputs at the
+/// same instants give the same bytes.
+class World {
+ public:
+  explicit World(const WorldOptions& options);
+
+  /// Opens the link; the handshake begins.
+  void open();
+  /// The link is gone, with everything on it.
+  void cut_link();
+  void submit(const session::Command& command);
+  void touch(const firmware::WorkcellEvent& event);
+  /// Bytes that somebody else sends to the controller: another sender, a boot loader, noise.
+  void inject_to_controller(std::string_view bytes);
+  /// Bytes that reach the session although the controller did not send them.
+  void inject_to_session(std::string_view bytes);
+  /// The controller loses power and comes back with what it had stored.
+  void restart_controller();
+
+  /// One deadline further; false when nothing will ever happen again or the next thing is later than `limit`.
+  bool step(Instant limit);
+  void run_for(Duration time);
+  /// Runs until `done(*this)` holds; false when it did not within `limit`.
+  template <std::predicate<const World&> Done>
+  bool run_until(const Done& done, Duration limit) {
+    const Instant end = now_ + limit;
+    while (!done(*this)) {
+      if (!step(end)) return done(*this);
+    }
+    return true;
+  }
+
+  [[nodiscard]] Instant now() const { return now_; }
+  [[nodiscard]] const session::Session& session() const { return session_; }
+  [[nodiscard]] const firmware::VirtualController& controller() const { return *controller_; }
+  /// Everything that the session told, in order.
+  [[nodiscard]] const std::vector<session::Event>& events() const { return events_; }
+  [[nodiscard]] const std::vector<TranscriptEntry>& transcript() const { return transcript_; }
+  /// One line an entry: seconds, `>` or `<`, the bytes with escapes.
+  [[nodiscard]] std::string transcript_text() const;
+  /// Most bytes that were ever unanswered at once.
+  [[nodiscard]] std::size_t most_bytes_in_flight() const { return most_in_flight_; }
+
+ private:
+  [[nodiscard]] Instant next_deadline() const;
+  void settle();
+  void move_bytes();
+  void record(Direction direction, const std::string& bytes);
+
+  WorldOptions options_;
+  Instant now_{};
+  std::unique_ptr<firmware::VirtualController> controller_;
+  session::Session session_;
+  Wire to_controller_;
+  Wire from_controller_;
+  bool linked_ = false;
+  std::vector<session::Event> events_;
+  std::vector<TranscriptEntry> transcript_;
+  std::size_t most_in_flight_ = 0;
+};
+
+/// Connects unless connected, starts `program` and runs until the job is over or `limit` has passed. Empty when the
+/// machine was never found or refused the job.
+[[nodiscard]] std::optional<job::JobState> run_job(World& world, std::shared_ptr<const job::Program> program,
+                                                   Duration limit);
+
+}  // namespace kerf::simulation
