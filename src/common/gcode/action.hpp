@@ -75,6 +75,8 @@ struct ArcMove {
 /// After it the owner calls Interpreter::sync_position with the place where the machine came to rest.
 struct ProbeMove {
   AxisValues target_mm{};
+  /// Where the parser stood: give this to sync_position if the probe never moved (ALARM:4).
+  AxisValues start_mm{};
   Feed feed;
   bool away = false;
   bool no_error = false;
@@ -107,10 +109,11 @@ struct SpindleSpeedChange {
   bool operator==(const SpindleSpeedChange&) const = default;
 };
 
-/// State after M7, M8, M9: waits for the motion to finish first.
+/// State after M7, M8, M9. `waits`: the motion finishes first; Rabbit's M9 does not wait.
 struct CoolantChange {
   bool flood = false;
   bool mist = false;
+  bool waits = true;
   bool operator==(const CoolantChange&) const = default;
 };
 

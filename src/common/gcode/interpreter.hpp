@@ -36,11 +36,12 @@ struct InterpreterSettings {
   bool restore_overrides_at_end = false;
   /// grblHAL `$486`, bit n: G59.n+1 may not be changed.
   unsigned locked_work_offsets = 0;
+  /// grblHAL `$376`: bit n set where axis n turns; G20 leaves it alone.
+  vocabulary::AxisMask rotary_axes = 0;
+  /// grblHAL `$41` bit 2: M56 exists.
+  bool parking_override_control = false;
   /// grblHAL `$28`.
   float g73_retract_mm = 0.1F;
-  /// Spindle limits `$30` and `$31`, rpm.
-  float rpm_max = 1000.0F;
-  float rpm_min = 0.0F;
 };
 
 /// Executes lines in the order and with the arithmetic of one firmware. A rejected line changes nothing, except for
@@ -75,12 +76,15 @@ class Interpreter {
   /// Whoever writes here (stored values at power-up, `$RST=#`, a probe result) calls reload_offsets afterwards.
   [[nodiscard]] Offsets& offsets() { return offsets_; }
   void reload_offsets();
-  [[nodiscard]] const GcodeRules& rules() const { return rules_; }
+  [[nodiscard]] const GcodeRules& rules() const { return *rules_; }
   [[nodiscard]] InterpreterSettings& settings() { return settings_; }
   [[nodiscard]] const InterpreterSettings& settings() const { return settings_; }
 
  private:
-  const GcodeRules& rules_;
+  /// What grblHAL forgets when any line fails.
+  void fail();
+
+  const GcodeRules* rules_;
   InterpreterSettings settings_;
   ParserState state_;
   Offsets offsets_;

@@ -34,7 +34,9 @@ class LineReader {
   void clear();
 
   /// Some of a line has been read and not ended.
-  [[nodiscard]] bool is_mid_line() const { return length_ > 0 || overlong_ || in_comment_ || to_end_comment_; }
+  [[nodiscard]] bool is_mid_line() const {
+    return !delivered_ && (length_ > 0 || overlong_ || in_comment_ || to_end_comment_);
+  }
 
   /// grblHAL with `$39`=0 lets `?`, `!`, `~` and bytes from 0xC0 through as text inside `$` and `[` lines and inside `(
   /// )` comments.
@@ -45,12 +47,12 @@ class LineReader {
   void take_stripped(char byte);
   void take_raw(char byte);
   void take_trimmed(char byte);
+  void note_trimmed(char byte);
   void erase_last();
-  void recheck();
   void start_line();
 
   /// Room for the longest line that any firmware takes.
-  static constexpr std::size_t kCapacity = 256;
+  static constexpr std::size_t kCapacity = 257;
 
   LineRules rules_;
   std::array<char, kCapacity> text_{};
@@ -59,6 +61,7 @@ class LineReader {
   bool in_comment_ = false;
   bool to_end_comment_ = false;
   bool keeps_realtime_ = false;
+  bool delivered_ = false;
   char last_end_ = '\0';
 };
 

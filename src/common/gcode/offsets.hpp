@@ -17,6 +17,8 @@ struct Offsets {
   AxisValues g28{};
   AxisValues g30{};
   AxisValues g92{};
+  /// grblHAL: what G92.3 and power-up bring back; G92.2 clears `g92` only.
+  AxisValues g92_stored{};
   /// Grbl and Rabbit use Z only.
   AxisValues tool_length{};
   /// Machine position of the last probe contact, and whether there was one.

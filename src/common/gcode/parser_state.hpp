@@ -2,6 +2,7 @@
 // The modal state of the interpreter: what stays in force from block to block.
 
 #include <cstdint>
+#include <optional>
 
 #include "common/gcode/action.hpp"
 #include "common/gcode/offsets.hpp"
@@ -17,15 +18,36 @@ enum class MotionMode : std::uint8_t {
   ProbeTowardNoError,
   ProbeAway,
   ProbeAwayNoError,
-  DrillChipBreak,   // G73
-  Drill,            // G81
-  DrillDwell,       // G82
-  DrillPeck,        // G83
-  BoreFeedOut,      // G85
-  BoreSpindleStop,  // G86
-  BoreDwell,        // G89
-  None,             // G80
+  DrillChipBreak,       // G73
+  Drill,                // G81
+  DrillDwell,           // G82
+  DrillPeck,            // G83
+  BoreFeedOut,          // G85
+  BoreSpindleStop,      // G86
+  BoreDwell,            // G89
+  Tap,                  // G84
+  CubicSpline,          // G5
+  QuadraticSpline,      // G5.1
+  SpindleSynchronized,  // G33
+  RigidTap,             // G33.1
+  Thread,               // G76
+  None,                 // G80
 };
+
+/// Repeated by later blocks that have axis words only (grblHAL).
+[[nodiscard]] constexpr bool is_canned_cycle(MotionMode mode) {
+  switch (mode) {
+    case MotionMode::DrillChipBreak:
+    case MotionMode::Drill:
+    case MotionMode::DrillDwell:
+    case MotionMode::DrillPeck:
+    case MotionMode::Tap:
+    case MotionMode::BoreFeedOut:
+    case MotionMode::BoreSpindleStop:
+    case MotionMode::BoreDwell: return true;
+    default: return false;
+  }
+}
 
 enum class FeedMode : std::uint8_t { UnitsPerMinute, InverseTime, UnitsPerRevolution };
 enum class ToolLengthMode : std::uint8_t { None, FromTable, Dynamic, Additional };
@@ -47,19 +69,23 @@ struct OverridePermissions {
   bool operator==(const OverridePermissions&) const = default;
 };
 
-/// What a canned cycle remembers while it is repeated by later blocks. Lengths in mm.
+/// What a canned cycle remembers while it is repeated by later blocks. Machine coordinates, mm.
 struct CannedCycle {
+  /// Depth on the linear axis; on the others the way from the position before.
   AxisValues target_mm{};
   float retract_position_mm = 0.0F;
-  float peck_mm = 0.0F;
+  float delta_mm = 0.0F;
   float dwell_s = 0.0F;
-  float previous_position_mm = 0.0F;
+  bool rapid_retract = true;
+  bool spindle_off = false;
   bool operator==(const CannedCycle&) const = default;
 };
 
 /// The part of the state that a block's words may change before it is known to be valid.
 struct ModalState {
   MotionMode motion = MotionMode::Rapid;
+  /// Later blocks repeat a canned cycle. grblHAL forgets to clear it at M2 and M30.
+  bool canned_cycle = false;
   Plane plane = Plane::XY;
   bool inches = false;
   bool incremental = false;
@@ -68,12 +94,20 @@ struct ModalState {
   std::uint8_t work_offset = 0;
   ToolLengthMode tool_length = ToolLengthMode::None;
   RetractMode retract = RetractMode::Previous;
-  bool diameter = false;
   bool scaling = false;
   SpindleDirection spindle = SpindleDirection::Off;
   Coolant coolant;
   OverridePermissions overrides;
   bool operator==(const ModalState&) const = default;
+};
+
+/// What M70 keeps for M72 (grblHAL).
+struct SavedModalState {
+  ModalState modal;
+  float feed_rate = 0.0F;
+  float spindle_rpm = 0.0F;
+  AxisValues tool_length_mm{};
+  bool operator==(const SavedModalState&) const = default;
 };
 
 struct ParserState {
@@ -87,16 +121,20 @@ struct ParserState {
   std::uint32_t tool_pending = 0;
   /// An M6 waits for the operator (grblHAL): motion answers error:40.
   bool tool_change_pending = false;
+  /// The tool that this M6 brings; a failed line meanwhile forgets it, and the old tool stays.
+  std::optional<std::uint32_t> arriving_tool;
   std::int32_t line_number = 0;
   /// Where the last block ends, machine coordinates.
   AxisValues position_mm{};
   /// Copy of the selected work offset: Grbl reads storage only when the selection changes.
   AxisValues work_offset_mm{};
-  bool g92_active = false;
   /// G51 centre and factors (grblHAL).
   AxisValues scale_center_mm{};
   AxisValues scale_factor{1, 1, 1, 1, 1, 1, 1, 1};
   CannedCycle canned;
+  std::optional<SavedModalState> saved;
+  /// G66 is in force: motions call a macro, of which there is none.
+  bool modal_macro = false;
 
   bool operator==(const ParserState&) const = default;
 };

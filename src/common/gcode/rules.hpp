@@ -1,10 +1,8 @@
 #pragma once
 // What one firmware's G-code reader and interpreter do differently from another's, as values and named policies.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <expected>
 #include <span>
 #include <string_view>
 
@@ -15,7 +13,7 @@ namespace kerf::gcode {
 
 struct Block;
 struct BlockContext;
-struct CommandRow;
+class CommandTable;
 
 /// How text becomes lines (protocol.md 6.2, 6.3).
 struct LineRules {
@@ -55,47 +53,66 @@ enum class BlockText : std::uint8_t {
   WithMessages,  // grblHAL: the same, `/` is block delete, `(MSG,...)` is a message, `%` alone demarcates
 };
 
-/// One step of checking a block; the order of the steps decides which of several errors is answered.
-using CheckStep = std::expected<void, vocabulary::ErrorCode> (*)(Block&, BlockContext&);
-/// One step of carrying out a block that passed all checks.
-using ActStep = void (*)(Block&, BlockContext&);
+/// Which [GC:] words a firmware prints (protocol.md 4.2).
+enum class ReportedGroups : std::uint8_t {
+  Grbl,
+  Rabbit,  // the same; G38.2 to G38.5 appear as G38.1 to G38.4
+  All,     // grblHAL: with G92, G40, G49, G98, G50, overrides; S has a trailing dot
+};
+
+/// One step of checking a block. The order of the steps decides which of several errors is answered.
+using CheckStep = vocabulary::ErrorCode (*)(Block&, BlockContext&);
+/// One step of carrying out a block that passed all checks; a few of them can still fail.
+using ActStep = vocabulary::ErrorCode (*)(Block&, BlockContext&);
 
 struct GcodeRules {
   vocabulary::Firmware firmware = vocabulary::Firmware::Unknown;
-  LineRules line;
+  LineRules line{};
   BlockText block_text = BlockText::AsRead;
-  FloatRule floats = FloatRule::Single;
 
-  /// Bits that the integer part of a command number is cut to: G257 is G1 on Grbl and Rabbit, apart from its fraction.
-  int command_bits = 8;
-  /// O and `$` are words.
-  bool has_spindle_words = false;
-  /// G and M words that exist, sorted by letter and number.
-  std::span<const CommandRow> commands;
-  /// Letters that carry values, and the letters among them that may not be negative or fractional when they are read.
+  FloatRule floats = FloatRule::Single;
+  /// Digits of a number that count; further ones only shift it.
+  int digits_max = 8;
+  bool counts_leading_zeros = true;
+  /// Command numbers are cut to 8 bits, apart from their fraction: G257 is G1 with a fraction of 256.
+  bool byte_commands = true;
+
+  /// G and M words that exist.
+  const CommandTable* commands = nullptr;
+  /// Letters besides G, M and the machine's axes that carry values. An axis letter among them is taken, and then unused
+  /// (error:36), on a machine that lacks the axis.
   std::string_view value_letters;
+  /// Letters that may not be negative, asked as soon as they are read.
   std::string_view non_negative_letters;
-  std::string_view integer_letters;
-  std::int32_t line_number_max = 10000000;
-  std::uint32_t tool_max = 255;
-  int work_offsets = 6;
+  /// Tool number above which T is refused when it is read (Grbl, Rabbit); 0: asked later, by a check.
+  float tool_max_at_once = 255.0F;
+  std::uint8_t work_offsets = 6;
 
   std::span<const CheckStep> checks;
   std::span<const ActStep> acts;
 
   /// Rabbit: T changes the tool while the line is read, even if the line is rejected later.
   bool tool_word_acts_at_once = false;
+  /// Rabbit: with G93 even G0 wants F.
+  bool rapid_wants_inverse_feed = false;
+  /// Rabbit: G10 looks at L before P.
+  bool g10_checks_l_first = false;
+  /// Rabbit: M7, M8, M9 act even if nothing changes, and M9 does not wait for the motion.
+  bool coolant_word_always_acts = false;
+  /// grblHAL: a failed line drops the tool that M6 was to bring, and G66.
+  bool failure_drops_pending_work = false;
+  /// Program end puts overrides back to 100 % (grblHAL: `$60`).
+  bool program_end_restores_overrides = true;
+
+  /// grblHAL: G92 is kept in storage as well.
+  bool stores_g92 = false;
+
+  ReportedGroups report = ReportedGroups::Grbl;
+
   /// What a reset wipes (protocol.md 1.2).
   bool reset_clears_tool = true;
   bool reset_clears_g92 = true;
   bool reset_clears_tool_length = true;
-
-  /// [GC:] lists (protocol.md 4.2).
-  bool reports_all_groups = false;
-  /// Rabbit prints G38.2 to G38.5 as G38.1 to G38.4.
-  int probe_report_shift = 0;
-  /// grblHAL prints whole speeds with a trailing dot.
-  bool rpm_with_dot = false;
 };
 
 /// The rules of a firmware; an unknown one is read as Grbl 1.1h.

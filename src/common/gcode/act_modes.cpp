@@ -1,0 +1,367 @@
+#include <algorithm>
+
+#include "common/gcode/acts.hpp"
+#include "common/gcode/numbers.hpp"
+
+namespace kerf::gcode {
+
+namespace {
+
+constexpr std::size_t kToolLengthAxis = 2;
+
+bool cuts(MotionMode motion) {
+  return motion == MotionMode::Linear || motion == MotionMode::ClockwiseArc ||
+         motion == MotionMode::CounterclockwiseArc || motion == MotionMode::CubicSpline ||
+         motion == MotionMode::QuadraticSpline;
+}
+
+StoredOffset stored_work_offset(std::uint8_t index) {
+  return static_cast<StoredOffset>(index);
+}
+
+void note_offset_change(BlockContext& context) {
+  context.out.push_back(WorkOffsetChange{});
+}
+
+void store(BlockContext& context, StoredOffset which) {
+  context.out.push_back(StoredOffsetWrite{.which = which});
+}
+
+/// Macros that grblHAL has built in; there are no files to take others from.
+ErrorCode run_macro(const Block& block) {
+  const auto id = static_cast<std::uint32_t>(to_int32(block.p));
+  const WordSet& arguments = block.macro_words;
+  const bool built_in = id >= 1 && id <= 7;
+  if (built_in && block.l > 1) return ErrorCode::ValueOutOfRange;
+  switch (id) {
+    case 1: return arguments.has('Q') ? ErrorCode::Ok : ErrorCode::ValueWordMissing;  // read or write a setting
+    case 2:                                                                           // tool offset, without a table
+      return arguments.has('Q') && arguments.has('R') ? ErrorCode::IllegalToolNumber : ErrorCode::ValueWordMissing;
+    case 3: return arguments.has('I') ? ErrorCode::Ok : ErrorCode::ValueWordMissing;  // parameter by number
+    case 4: return ErrorCode::Ok;                                                     // machine state
+    case 5:                                                                           // select a probe
+      if (!arguments.has('Q')) return ErrorCode::ValueWordMissing;
+      return block.q == 0.0F ? ErrorCode::Ok : ErrorCode::ValueOutOfRange;
+    case 6: return ErrorCode::Ok;                  // no spindle delay
+    case 7: return ErrorCode::UnsupportedCommand;  // Modbus
+    default: return ErrorCode::ValueOutOfRange;
+  }
+}
+
+void move_home(Block& block, BlockContext& context) {
+  Feed feed = feed_of(block, context);
+  feed.rapid = true;
+  if (block.axis_command != AxisCommand::None) context.out.push_back(LinearMove{.target_mm = block.xyz, .feed = feed});
+  context.out.push_back(LinearMove{.target_mm = block.stored_mm, .feed = feed});
+  context.state.position_mm = block.stored_mm;
+  context.state.scale_factor.fill(1.0F);
+  context.state.modal.scaling = false;
+}
+
+void write_work_offset(const Block& block, BlockContext& context) {
+  context.offsets.work[block.stored_index] = block.stored_mm;
+  store(context, stored_work_offset(block.stored_index));
+  if (context.state.modal.work_offset == block.stored_index) {
+    context.state.work_offset_mm = block.stored_mm;
+    note_offset_change(context);
+  }
+}
+
+void write_g92(const AxisValues& value, BlockContext& context, bool stores) {
+  context.offsets.g92 = value;
+  note_offset_change(context);
+  if (stores && context.rules.stores_g92 && !context.settings.g92_volatile) {
+    context.offsets.g92_stored = value;
+    store(context, StoredOffset::G92);
+  }
+}
+
+void set_tool_length(const AxisValues& value, BlockContext& context) {
+  if (context.offsets.tool_length == value) return;
+  context.offsets.tool_length = value;
+  note_offset_change(context);
+}
+
+void end_program(BlockContext& context) {
+  ParserState& state = context.state;
+  ModalState& modal = state.modal;
+  modal.motion = MotionMode::Linear;
+  modal.plane = Plane::XY;
+  modal.incremental = false;
+  modal.feed_mode = FeedMode::UnitsPerMinute;
+  modal.work_offset = 0;
+  modal.spindle = SpindleDirection::Off;
+  modal.coolant = {};
+  modal.overrides.feed = modal.overrides.spindle = true;
+  if (!context.settings.check_mode) {
+    state.work_offset_mm = context.offsets.work[0];
+    const bool keeps_g92 = context.rules.stores_g92 && !context.settings.g92_volatile;
+    if (keeps_g92 && context.offsets.g92_stored != context.offsets.g92) {
+      context.offsets.g92_stored = context.offsets.g92;
+      store(context, StoredOffset::G92);
+    }
+    note_offset_change(context);
+  }
+  if (context.rules.failure_drops_pending_work) {
+    state.arriving_tool.reset();
+    state.modal_macro = false;
+    state.saved.reset();
+  }
+  const bool restores = context.rules.program_end_restores_overrides || context.settings.restore_overrides_at_end;
+  context.out.push_back(ProgramEnd{.restores_overrides = restores});
+}
+
+}  // namespace
+
+// G65 runs before anything else of its block acts, and nothing else does.
+ErrorCode act_macro(Block& block, BlockContext&) {
+  if (!block.groups.has(Group::G16) || block.macro != MacroCall::NonModal) return ErrorCode::Ok;
+  block.finished = true;
+  return run_macro(block);
+}
+
+// In laser mode only G1, G2 and G3 burn, and S takes effect with the motion instead of stopping it.
+ErrorCode act_laser(Block& block, BlockContext& context) {
+  if (!context.settings.laser_mode) return ErrorCode::Ok;
+  block.laser_disable = !cuts(block.modal.motion);
+  if (block.axis_words != 0 && block.axis_command == AxisCommand::Motion) {
+    block.laser_is_motion = true;
+  } else if (context.state.modal.spindle == SpindleDirection::Clockwise) {
+    block.spindle_force_sync = cuts(context.state.modal.motion) == block.laser_disable;
+  }
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_feed(Block& block, BlockContext& context) {
+  context.state.line_number = block.n;
+  context.state.modal.feed_mode = block.modal.feed_mode;
+  context.state.feed_rate = block.f;
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_spindle_speed(Block& block, BlockContext& context) {
+  ParserState& state = context.state;
+  if (state.spindle_rpm == block.s && !block.spindle_force_sync) return ErrorCode::Ok;
+  if (state.modal.spindle != SpindleDirection::Off && !block.laser_is_motion)
+    context.out.push_back(SpindleSpeedChange{.rpm = block.laser_disable ? 0.0F : block.s});
+  state.spindle_rpm = block.s;
+  return ErrorCode::Ok;
+}
+
+// Grbl only remembers the number, 0 again in every block without T.
+ErrorCode act_tool_number(Block& block, BlockContext& context) {
+  const auto tool = static_cast<std::uint32_t>(block.t);
+  if (block.has_tool_word) context.out.push_back(ToolSelect{.tool = static_cast<int>(tool)});
+  context.state.tool = tool;
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_tool_select(Block& block, BlockContext& context) {
+  ParserState& state = context.state;
+  const std::uint32_t tool = to_uint32(block.t);
+  if (state.tool_pending == tool) return ErrorCode::Ok;
+  state.tool_pending = tool;
+  if (context.settings.check_mode) return ErrorCode::Ok;
+  if (block.tool_set || context.settings.ignore_tool_change) {
+    state.tool = tool;
+    state.arriving_tool.reset();
+  }
+  context.out.push_back(ToolSelect{.tool = static_cast<int>(tool)});
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_tool_change(Block& block, BlockContext& context) {
+  if (!block.tool_change || context.settings.check_mode) return ErrorCode::Ok;
+  ParserState& state = context.state;
+  if (!block.message.empty()) {
+    context.out.push_back(OperatorMessage{.text = block.message});
+    block.message.clear();
+  }
+  if (state.tool_pending == state.tool) return ErrorCode::Ok;
+  state.arriving_tool = state.tool_pending;
+  state.tool_change_pending = true;
+  context.out.push_back(ToolChange{.tool = static_cast<int>(state.tool_pending)});
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_spindle(Block& block, BlockContext& context) {
+  ParserState& state = context.state;
+  if (state.modal.spindle == block.modal.spindle) return ErrorCode::Ok;
+  state.modal.spindle = block.modal.spindle;
+  context.out.push_back(
+      SpindleChange{.direction = block.modal.spindle, .rpm = block.laser_disable ? 0.0F : state.spindle_rpm});
+  return ErrorCode::Ok;
+}
+
+// M70 and M73 keep the modes, M72 brings them back, M71 forgets them (grblHAL).
+ErrorCode act_saved_state(Block& block, BlockContext& context) {
+  ParserState& state = context.state;
+  switch (block.saved_state) {
+    case SavedState::None: break;
+    case SavedState::Save:
+      state.saved = SavedModalState{.modal = state.modal,
+                                    .feed_rate = state.feed_rate,
+                                    .spindle_rpm = state.spindle_rpm,
+                                    .tool_length_mm = context.offsets.tool_length};
+      break;
+    case SavedState::Invalidate: state.saved.reset(); break;
+    case SavedState::Restore: {
+      if (!state.saved) break;
+      const SavedModalState& saved = *state.saved;
+      state.feed_rate = saved.feed_rate;
+      state.modal.feed_mode = saved.modal.feed_mode;
+      state.modal.tool_length = saved.modal.tool_length;
+      set_tool_length(saved.tool_length_mm, context);
+      if (saved.modal.coolant != state.modal.coolant)
+        context.out.push_back(CoolantChange{.flood = saved.modal.coolant.flood, .mist = saved.modal.coolant.mist});
+      if (saved.modal.spindle != state.modal.spindle || saved.spindle_rpm != state.spindle_rpm)
+        context.out.push_back(SpindleChange{.direction = saved.modal.spindle, .rpm = saved.spindle_rpm});
+      state.spindle_rpm = saved.spindle_rpm;
+      state.modal.spindle = saved.modal.spindle;
+      state.modal.coolant = saved.modal.coolant;
+      // The rest acts as if the block had the words.
+      block.modal.plane = saved.modal.plane;
+      block.modal.incremental = saved.modal.incremental;
+      block.modal.inches = saved.modal.inches;
+      block.modal.overrides = saved.modal.overrides;
+      block.modal.retract = saved.modal.retract;
+      block.groups.add(Group::G10);
+      if (saved.modal.work_offset != state.modal.work_offset) {
+        block.modal.work_offset = saved.modal.work_offset;
+        block.work_offset_mm = context.offsets.work[saved.modal.work_offset];
+      }
+      break;
+    }
+  }
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_coolant(Block& block, BlockContext& context) {
+  ParserState& state = context.state;
+  if (block.coolant_word == CoolantWord::None) return ErrorCode::Ok;
+  const bool always = context.rules.coolant_word_always_acts;
+  if (!always && state.modal.coolant == block.modal.coolant) return ErrorCode::Ok;
+  state.modal.coolant = block.modal.coolant;
+  context.out.push_back(CoolantChange{.flood = block.modal.coolant.flood,
+                                      .mist = block.modal.coolant.mist,
+                                      .waits = !(always && block.coolant_word == CoolantWord::Off)});
+  return ErrorCode::Ok;
+}
+
+// The usual Rabbit board has no user pins: whatever number is asked for does not exist.
+ErrorCode act_pins(Block& block, BlockContext&) {
+  return block.pin_word == PinWord::None ? ErrorCode::Ok : ErrorCode::ParameterPTooLarge;
+}
+
+ErrorCode act_overrides(Block& block, BlockContext& context) {
+  OverridePermissions& permissions = context.state.modal.overrides;
+  if (permissions == block.modal.overrides) return ErrorCode::Ok;
+  permissions = block.modal.overrides;
+  context.out.push_back(OverrideControl{.feed_enabled = permissions.feed,
+                                        .spindle_enabled = permissions.spindle,
+                                        .feed_hold_enabled = permissions.feed_hold,
+                                        .parking_enabled = permissions.parking});
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_dwell(Block& block, BlockContext& context) {
+  if (block.non_modal == NonModal::Dwell) context.out.push_back(Dwell{.dwell_s = block.p});
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_modes(Block& block, BlockContext& context) {
+  ModalState& modal = context.state.modal;
+  modal.plane = block.modal.plane;
+  modal.inches = block.modal.inches;
+  modal.incremental = block.modal.incremental;
+  if (block.groups.has(Group::G10)) modal.retract = block.modal.retract;
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_tool_length(Block& block, BlockContext& context) {
+  if (block.axis_command != AxisCommand::ToolLength) return ErrorCode::Ok;
+  context.state.modal.tool_length = block.modal.tool_length;
+  AxisValues length = context.offsets.tool_length;
+  length[kToolLengthAxis] = block.modal.tool_length == ToolLengthMode::None ? 0.0F : block.xyz[kToolLengthAxis];
+  set_tool_length(length, context);
+  return ErrorCode::Ok;
+}
+
+// Every axis may have a tool length; G43.1 changes those that it names.
+ErrorCode act_tool_length_grblhal(Block& block, BlockContext& context) {
+  if (!block.groups.has(Group::G8)) return ErrorCode::Ok;
+  context.state.modal.tool_length = block.modal.tool_length;
+  AxisValues length{};
+  if (block.modal.tool_length == ToolLengthMode::Dynamic) {
+    length = context.offsets.tool_length;
+    for (std::size_t axis = 0; axis < context.axes(); ++axis)
+      if (block.has_axis(axis)) length[axis] = block.xyz[axis];
+  }
+  set_tool_length(length, context);
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_work_offset(Block& block, BlockContext& context) {
+  ParserState& state = context.state;
+  if (state.modal.work_offset == block.modal.work_offset) return ErrorCode::Ok;
+  state.modal.work_offset = block.modal.work_offset;
+  state.work_offset_mm = block.work_offset_mm;
+  note_offset_change(context);
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_non_modal(Block& block, BlockContext& context) {
+  switch (block.non_modal) {
+    case NonModal::None:
+    case NonModal::Dwell:
+    case NonModal::AbsoluteOverride: break;
+    case NonModal::SetData: write_work_offset(block, context); break;
+    case NonModal::GoHome28:
+    case NonModal::GoHome30: move_home(block, context); break;
+    case NonModal::SetHome28:
+      context.offsets.g28 = context.state.position_mm;
+      store(context, StoredOffset::G28);
+      break;
+    case NonModal::SetHome30:
+      context.offsets.g30 = context.state.position_mm;
+      store(context, StoredOffset::G30);
+      break;
+    case NonModal::SetCoordinateOffset: write_g92(block.xyz, context, true); break;
+    case NonModal::ResetCoordinateOffset: write_g92({}, context, true); break;
+    case NonModal::ClearCoordinateOffset: write_g92({}, context, false); break;
+    case NonModal::RestoreCoordinateOffset: write_g92(context.offsets.g92_stored, context, false); break;
+  }
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_message(Block& block, BlockContext& context) {
+  if (!block.message.empty() && !context.settings.check_mode)
+    context.out.push_back(OperatorMessage{.text = block.message});
+  return ErrorCode::Ok;
+}
+
+// M98, and G66 after G0 or G1: the motion is done, then the macro is not found.
+ErrorCode act_modal_macro(Block& block, BlockContext& context) {
+  const bool moved = block.axis_command == AxisCommand::Motion &&
+                     (block.modal.motion == MotionMode::Rapid || block.modal.motion == MotionMode::Linear);
+  if (context.state.modal_macro && moved) return ErrorCode::ValueOutOfRange;
+  if (!block.groups.has(Group::G16)) return ErrorCode::Ok;
+  if (block.macro == MacroCall::End) context.state.modal_macro = false;
+  if (block.macro == MacroCall::ModalEachBlock) return run_macro(block);
+  if (block.macro == MacroCall::Subprogram && !context.settings.check_mode) return run_macro(block);
+  return ErrorCode::Ok;
+}
+
+ErrorCode act_program_flow(Block& block, BlockContext& context) {
+  switch (block.flow) {
+    case ProgramFlow::Running: break;
+    case ProgramFlow::Paused:
+    case ProgramFlow::CompletedM60: context.out.push_back(ProgramPause{.optional = false}); break;
+    case ProgramFlow::OptionalStop: context.out.push_back(ProgramPause{.optional = true}); break;
+    case ProgramFlow::CompletedM2:
+    case ProgramFlow::CompletedM30: end_program(context); break;
+  }
+  return ErrorCode::Ok;
+}
+
+}  // namespace kerf::gcode

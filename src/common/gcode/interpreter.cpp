@@ -1,0 +1,120 @@
+#include "common/gcode/interpreter.hpp"
+
+#include "common/gcode/block.hpp"
+
+namespace kerf::gcode {
+
+namespace {
+
+/// The block before its words: the modal state goes on, unless it is a jog, which has its own motion and feed mode.
+void start_block(Block& block, const ParserState& state, bool jog) {
+  block.modal = state.modal;
+  block.jog = jog;
+  if (!jog) return;
+  block.modal.motion = MotionMode::Linear;
+  block.modal.canned_cycle = false;
+  block.modal.feed_mode = FeedMode::UnitsPerMinute;
+}
+
+template <typename Step>
+ErrorCode run(std::span<const Step> steps, Block& block, BlockContext& context) {
+  for (const Step step : steps) {
+    if (const ErrorCode error = step(block, context); error != ErrorCode::Ok) return error;
+    if (block.finished) break;
+  }
+  return ErrorCode::Ok;
+}
+
+ErrorCode read_block(std::string_view line, Block& block, BlockContext& context) {
+  BlockBuffer buffer;
+  PreparedText prepared = prepare_text(line, context.rules, context.settings, buffer);
+  block.message = std::move(prepared.message);
+  if (prepared.demarcates) context.out.push_back(ProgramDemarcation{});
+  if (buffer.length == 0) {
+    if (!block.message.empty()) context.out.push_back(OperatorMessage{.text = std::move(block.message)});
+    block.finished = true;
+    return ErrorCode::Ok;
+  }
+  if (const ErrorCode error = collect_words(buffer.text.data(), block, context); error != ErrorCode::Ok) return error;
+  return run(context.rules.checks, block, context);
+}
+
+}  // namespace
+
+Interpreter::Interpreter(const GcodeRules& rules, InterpreterSettings settings) : rules_(&rules), settings_(settings) {}
+
+std::expected<void, ErrorCode> Interpreter::interpret(std::string_view line, std::vector<Action>& out) {
+  BlockContext context{.rules = *rules_, .settings = settings_, .state = state_, .offsets = offsets_, .out = out};
+  Block block;
+  start_block(block, state_, false);
+  ErrorCode error = read_block(line, block, context);
+  if (error == ErrorCode::Ok && !block.finished) error = run(rules_->acts, block, context);
+  if (error == ErrorCode::Ok) return {};
+  fail();
+  return std::unexpected(error);
+}
+
+std::expected<JogMove, ErrorCode> Interpreter::interpret_jog(std::string_view after_dollar_J) {
+  std::vector<Action> said;
+  BlockContext context{.rules = *rules_, .settings = settings_, .state = state_, .offsets = offsets_, .out = said};
+  Block block;
+  start_block(block, state_, true);
+  BlockBuffer buffer;
+  prepare_text(after_dollar_J, *rules_, settings_, buffer);
+  ErrorCode error = collect_words(buffer.text.data(), block, context);
+  if (error == ErrorCode::Ok) error = run(rules_->checks, block, context);
+  if (error != ErrorCode::Ok) {
+    fail();
+    return std::unexpected(error);
+  }
+  return JogMove{.target_mm = block.xyz,
+                 .feed = {.rate_mm_per_min = block.f,
+                          .no_override = true,
+                          .spindle_rpm = state_.spindle_rpm,
+                          .spindle = state_.modal.spindle,
+                          .line_number = block.n}};
+}
+
+void Interpreter::reset() {
+  const ParserState old = std::move(state_);
+  state_ = {};
+  state_.position_mm = old.position_mm;
+  if (!rules_->reset_clears_tool) state_.tool = state_.tool_pending = old.tool;
+  if (!rules_->reset_clears_tool) state_.modal_macro = false;
+  if (rules_->reset_clears_g92) offsets_.g92 = {};
+  if (rules_->reset_clears_tool_length) offsets_.tool_length = {};
+  reload_offsets();
+}
+
+void Interpreter::sync_position(const AxisValues& mm) {
+  state_.position_mm = mm;
+}
+
+void Interpreter::complete_tool_change() {
+  if (state_.arriving_tool) state_.tool = *state_.arriving_tool;
+  abort_tool_change();
+}
+
+void Interpreter::abort_tool_change() {
+  state_.arriving_tool.reset();
+  state_.tool_change_pending = false;
+}
+
+AxisValues Interpreter::work_coordinate_offset() const {
+  AxisValues sum{};
+  for (std::size_t axis = 0; axis < sum.size(); ++axis)
+    sum[axis] = state_.work_offset_mm[axis] + offsets_.g92[axis] + offsets_.tool_length[axis];
+  return sum;
+}
+
+void Interpreter::reload_offsets() {
+  state_.work_offset_mm = offsets_.work[state_.modal.work_offset];
+}
+
+void Interpreter::fail() {
+  if (!rules_->failure_drops_pending_work) return;
+  state_.arriving_tool.reset();
+  state_.modal_macro = false;
+}
+
+}  // namespace kerf::gcode

@@ -1,0 +1,168 @@
+#include "common/gcode/modal_words.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+#include "common/base/text.hpp"
+
+namespace kerf::gcode {
+
+namespace {
+
+constexpr std::string_view kMotionWords[] = {"G0",  "G1",   "G2",  "G3",    "G38.2", "G38.3", "G38.4", "G38.5",
+                                             "G73", "G81",  "G82", "G83",   "G85",   "G86",   "G89",   "G84",
+                                             "G5",  "G5.1", "G33", "G33.1", "G76",   "G80"};
+/// Rabbit counts the probe modes from one less.
+constexpr std::string_view kRabbitProbeWords[] = {"G38.1", "G38.2", "G38.3", "G38.4"};
+constexpr std::string_view kWorkOffsetWords[] = {"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"};
+constexpr float kMmPerInch = 25.4F;
+
+class Words {
+ public:
+  Words(std::string& out) : out_(out) {}
+
+  void add(std::string_view word) {
+    if (!first_) out_ += ' ';
+    first_ = false;
+    out_ += word;
+  }
+
+  std::string& text() { return out_; }
+
+ private:
+  std::string& out_;
+  bool first_ = true;
+};
+
+std::string_view motion_word(const ParserState& state, bool rabbit) {
+  const auto at = static_cast<std::size_t>(state.modal.motion);
+  constexpr auto kFirstProbe = static_cast<std::size_t>(MotionMode::ProbeToward);
+  if (rabbit && at >= kFirstProbe && at < kFirstProbe + std::size(kRabbitProbeWords))
+    return kRabbitProbeWords[at - kFirstProbe];
+  return kMotionWords[at];
+}
+
+std::string_view plane_word(Plane plane) {
+  switch (plane) {
+    case Plane::XY: return "G17";
+    case Plane::ZX: return "G18";
+    case Plane::YZ: break;
+  }
+  return "G19";
+}
+
+std::string_view feed_word(FeedMode mode) {
+  switch (mode) {
+    case FeedMode::UnitsPerMinute: return "G94";
+    case FeedMode::InverseTime: return "G93";
+    case FeedMode::UnitsPerRevolution: break;
+  }
+  return "G95";
+}
+
+std::string_view tool_length_word(ToolLengthMode mode) {
+  switch (mode) {
+    case ToolLengthMode::None: return "G49";
+    case ToolLengthMode::FromTable: return "G43";
+    case ToolLengthMode::Dynamic: return "G43.1";
+    case ToolLengthMode::Additional: break;
+  }
+  return "G43.2";
+}
+
+std::string_view spindle_word(SpindleDirection direction) {
+  switch (direction) {
+    case SpindleDirection::Off: return "M5";
+    case SpindleDirection::Clockwise: return "M3";
+    case SpindleDirection::Counterclockwise: break;
+  }
+  return "M4";
+}
+
+void add_coolant(const Coolant& coolant, Words& words) {
+  if (coolant.mist) words.add("M7");
+  if (coolant.flood) words.add("M8");
+  if (!coolant.mist && !coolant.flood) words.add("M9");
+}
+
+bool has_g92(const Offsets& offsets, int axes) {
+  for (int axis = 0; axis < axes; ++axis)
+    if (offsets.g92[static_cast<std::size_t>(axis)] != 0.0F) return true;
+  return false;
+}
+
+void add_scaling(const ParserState& state, int axes, Words& words) {
+  if (!state.modal.scaling) return words.add("G50");
+  words.add("G51:");
+  for (int axis = 0; axis < axes; ++axis) {
+    const auto at = static_cast<std::size_t>(axis);
+    if (state.scale_factor[at] != 1.0F) words.text() += vocabulary::kAxisLetters[at];
+  }
+}
+
+void add_overrides(const OverridePermissions& permissions, bool shows_parking, Words& words) {
+  if (!permissions.feed) words.add("M50");
+  if (!permissions.spindle) words.add("M51");
+  if (!permissions.feed_hold) words.add("M53");
+  if (shows_parking && !permissions.parking) words.add("M56");
+}
+
+/// Grbl's and grblHAL's printer: adds half of the last place and cuts, in float.
+void append_rounded(float value, int decimals, std::string& out) {
+  if (value < 0.0F) {
+    out += '-';
+    value = -value;
+  }
+  if (decimals > 0) value *= 10.0F;
+  const auto scaled = static_cast<std::uint64_t>(std::fmin(value + 0.5F, 4294967040.0F));
+  out += std::to_string(decimals > 0 ? scaled / 10 : scaled);
+  if (decimals > 0) (out += '.') += std::to_string(scaled % 10);
+}
+
+void add_number(char letter, float value, int decimals, bool printf_like, Words& words) {
+  words.add({&letter, 1});
+  if (printf_like) {
+    base::append_fixed(words.text(), static_cast<double>(value), decimals);
+  } else {
+    append_rounded(value, decimals, words.text());
+  }
+}
+
+}  // namespace
+
+void append_modal_words(const ParserState& state, const Offsets& offsets, const GcodeRules& rules,
+                        const ModalWordsStyle& style, std::string& out) {
+  const ModalState& modal = state.modal;
+  const bool all_groups = rules.report == ReportedGroups::All;
+  const bool rabbit = rules.report == ReportedGroups::Rabbit;
+  Words words(out);
+
+  words.add(motion_word(state, rabbit));
+  words.add(kWorkOffsetWords[modal.work_offset]);
+  if (all_groups && has_g92(offsets, style.axes)) words.add("G92");
+  words.add(plane_word(modal.plane));
+  words.add(modal.inches ? "G20" : "G21");
+  if (state.modal_macro) words.add("G66");
+  words.add(modal.incremental ? "G91" : "G90");
+  words.add(feed_word(modal.feed_mode));
+  if (all_groups) {
+    words.add("G40");
+    words.add(tool_length_word(modal.tool_length));
+    words.add(modal.retract == RetractMode::RPosition ? "G99" : "G98");
+    add_scaling(state, style.axes, words);
+  }
+  words.add(spindle_word(modal.spindle));
+  if (state.tool_change_pending) words.add("M6");
+  add_coolant(modal.coolant, words);
+  add_overrides(modal.overrides, style.parking_override_control, words);
+
+  words.add("T");
+  out += std::to_string(state.tool);
+  // Rabbit prints with printf and forgets to convert F to inches.
+  const bool converts = style.inches && !rabbit;
+  add_number('F', converts ? state.feed_rate / kMmPerInch : state.feed_rate, style.inches ? 1 : 0, rabbit, words);
+  add_number('S', rabbit ? std::trunc(state.spindle_rpm) : state.spindle_rpm, 0, false, words);
+  if (all_groups) out += '.';
+}
+
+}  // namespace kerf::gcode
