@@ -88,6 +88,8 @@ class Planner {
 
   /// Oldest block: the one whose segments are being prepared. Null when empty.
   [[nodiscard]] const PlannedBlock* current() const { return is_empty() ? nullptr : &ring_[slot(tail_)]; }
+  /// Block number `index` from the oldest, below block_count().
+  [[nodiscard]] const PlannedBlock& at(int index) const { return ring_[slot((tail_ + index) % ring_size())]; }
 
  private:
   friend class SegmentPreparer;
