@@ -80,7 +80,7 @@ TEST_LIBRARIES = ("gtest/", "gmock/", "rapidcheck", "rapidcheck/")
 
 # What the core may not call or write; `::now(` in io/ is where real time enters.
 IMPURE_CODE = [
-    (r"\bnow\s*\(\s*\)", "ambient", "take the instant as a parameter; clocks are read in io/"),
+    (r"::\s*now\s*\(", "ambient", "take the instant as a parameter; clocks are read in io/"),
     (r"\b(?:sleep_for|sleep_until|usleep|nanosleep)\b", "ambient", "give a deadline to the owner instead of sleeping"),
     (r"\bstd::(?:function|move_only_function)\b", "callback", "a part never calls out: put it into the outbox"),
     (r"\bstd::(?:random_device|getenv|time|system)\b", "ambient", "pass it in as a value from io/ or apps/"),
