@@ -1,9 +1,9 @@
 #include "common/gcode/modal_words.hpp"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
-
-#include "common/base/text.hpp"
 
 namespace kerf::gcode {
 
@@ -19,7 +19,7 @@ constexpr float kMmPerInch = 25.4F;
 
 class Words {
  public:
-  Words(std::string& out) : out_(out) {}
+  explicit Words(std::string& out) : out_(out) {}
 
   void add(std::string_view word) {
     if (!first_) out_ += ' ';
@@ -119,10 +119,17 @@ void append_rounded(float value, int decimals, std::string& out) {
   if (decimals > 0) (out += '.') += std::to_string(scaled % 10);
 }
 
+/// C's printf: half goes to the even neighbour.
+void append_printed(float value, int decimals, std::string& out) {
+  std::array<char, 64> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals);
+  out.append(text.data(), end.ptr);
+}
+
 void add_number(char letter, float value, int decimals, bool printf_like, Words& words) {
   words.add({&letter, 1});
   if (printf_like) {
-    base::append_fixed(words.text(), static_cast<double>(value), decimals);
+    append_printed(value, decimals, words.text());
   } else {
     append_rounded(value, decimals, words.text());
   }

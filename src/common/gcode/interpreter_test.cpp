@@ -1,0 +1,548 @@
+#include "common/gcode/interpreter.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "common/gcode/line_reader.hpp"
+
+namespace kerf::gcode {
+namespace {
+
+using vocabulary::Firmware;
+
+constexpr Firmware kAll[] = {Firmware::Grbl, Firmware::Rabbit, Firmware::GrblHal};
+
+/// An interpreter that is fed bytes, with what it answered and did.
+struct Bench {
+  explicit Bench(Firmware firmware, InterpreterSettings settings = {})
+      : interpreter(rules_for(firmware), settings), reader(rules_for(firmware).line) {}
+
+  /// The answer to one line: 0 or the error's number.
+  int send(std::string line) {
+    line += '\n';
+    int answer = -1;
+    for (const char byte : line) {
+      const auto read = reader.push(byte);
+      if (!read) continue;
+      if (read->overlong) {
+        answer = 11;
+      } else {
+        const auto result = interpreter.interpret(read->text, actions);
+        answer = result ? 0 : static_cast<int>(result.error());
+      }
+    }
+    return answer;
+  }
+
+  template <typename T>
+  std::vector<T> all() const {
+    std::vector<T> found;
+    for (const Action& action : actions)
+      if (const T* hit = std::get_if<T>(&action)) found.push_back(*hit);
+    return found;
+  }
+
+  [[nodiscard]] const ParserState& state() const { return interpreter.state(); }
+
+  Interpreter interpreter;
+  LineReader reader;
+  std::vector<Action> actions;
+};
+
+struct AnswerCase {
+  const char* line;
+  int grbl;
+  int rabbit;
+  int grblhal;
+};
+
+class Answers : public testing::TestWithParam<AnswerCase> {};
+
+TEST_P(Answers, AsTheFirmwareGivesThem) {
+  const AnswerCase& row = GetParam();
+  EXPECT_EQ(Bench(Firmware::Grbl).send(row.line), row.grbl) << row.line;
+  EXPECT_EQ(Bench(Firmware::Rabbit).send(row.line), row.rabbit) << row.line;
+  EXPECT_EQ(Bench(Firmware::GrblHal).send(row.line), row.grblhal) << row.line;
+}
+
+INSTANTIATE_TEST_SUITE_P(Numbers, Answers,
+                         testing::Values(AnswerCase{"G1X1F100", 0, 0, 0}, AnswerCase{"g 1 x 1 f 1 0 0", 0, 0, 0},
+                                         AnswerCase{"G1X--1F100", 2, 2, 2}, AnswerCase{"X", 2, 2, 2},
+                                         AnswerCase{"G1X1E1F100", 20, 36, 36}, AnswerCase{"G1X1,5F100", 1, 1, 1},
+                                         AnswerCase{"G1.005X1F100", 0, 0, 0}, AnswerCase{"G0.999X1", 23, 23, 23},
+                                         AnswerCase{"G257X1F100", 23, 23, 20}, AnswerCase{"M259", 23, 23, 20},
+                                         AnswerCase{"G16385X1F100", 0, 0, 20}, AnswerCase{"O100", 20, 20, 36},
+                                         AnswerCase{"O-1", 20, 20, 4}, AnswerCase{"G-1", 20, 20, 20}));
+
+INSTANTIATE_TEST_SUITE_P(Words, Answers,
+                         testing::Values(AnswerCase{"G1X1X2F100", 25, 25, 25}, AnswerCase{"F-1", 4, 4, 4},
+                                         AnswerCase{"T256", 38, 38, 0}, AnswerCase{"T1.5", 0, 0, 23},
+                                         AnswerCase{"L-1", 36, 36, 23}, AnswerCase{"Q1", 20, 36, 36},
+                                         AnswerCase{"D1", 20, 20, 36}, AnswerCase{"N10000001", 27, 27, 27},
+                                         AnswerCase{"N-1", 4, 4, 4}, AnswerCase{"P1", 36, 36, 36},
+                                         AnswerCase{"G0X1K1", 36, 36, 36}, AnswerCase{"A1", 20, 20, 36},
+                                         AnswerCase{"$1", 1, 1, 36}));
+
+INSTANTIATE_TEST_SUITE_P(Groups, Answers,
+                         testing::Values(AnswerCase{"G54G55", 21, 21, 21}, AnswerCase{"G0G1X1F1", 24, 21, 24},
+                                         AnswerCase{"G28G1X1F1", 24, 0, 24}, AnswerCase{"M3M5", 21, 21, 21},
+                                         AnswerCase{"M7M9", 20, 21, 21}, AnswerCase{"G0G80", 21, 21, 21},
+                                         AnswerCase{"G92X1G28", 24, 24, 24}, AnswerCase{"G43.1Z1G49", 24, 24, 21},
+                                         AnswerCase{"G43.1Z1G0", 24, 0, 24}, AnswerCase{"M6", 20, 0, 0},
+                                         AnswerCase{"M62P0", 20, 39, 20}, AnswerCase{"M62", 20, 28, 20},
+                                         AnswerCase{"M61Q1", 20, 20, 0}, AnswerCase{"M56", 20, 20, 20}));
+
+INSTANTIATE_TEST_SUITE_P(Modes, Answers,
+                         testing::Values(AnswerCase{"G1X1", 22, 22, 22}, AnswerCase{"G93G0X1", 0, 22, 0},
+                                         AnswerCase{"G95", 20, 20, 20}, AnswerCase{"G43H1", 20, 20, 20},
+                                         AnswerCase{"G43.1X1", 37, 37, 0}, AnswerCase{"G43.1", 37, 37, 37},
+                                         AnswerCase{"G49.7", 0, 0, 0}, AnswerCase{"G59.1", 23, 23, 0},
+                                         AnswerCase{"G59.4", 23, 23, 20}, AnswerCase{"G61", 0, 0, 0},
+                                         AnswerCase{"G61.1", 20, 20, 20}, AnswerCase{"G50", 20, 20, 0},
+                                         AnswerCase{"G51", 20, 20, 26}, AnswerCase{"G96S1", 20, 20, 20},
+                                         AnswerCase{"G53G2X1I1F1", 30, 30, 30}, AnswerCase{"G80X1", 31, 31, 31},
+                                         AnswerCase{"G4", 28, 28, 28}, AnswerCase{"G4P-1", 4, 4, 4},
+                                         AnswerCase{"G33Z1K1", 20, 20, 20}, AnswerCase{"G66P1", 20, 20, 0},
+                                         AnswerCase{"G65P100", 20, 20, 39}, AnswerCase{"M98P100", 20, 20, 39}));
+
+INSTANTIATE_TEST_SUITE_P(Arcs, Answers,
+                         testing::Values(AnswerCase{"G2X1Y1F100", 35, 35, 35}, AnswerCase{"G2I1F100", 26, 26, 0},
+                                         AnswerCase{"G2Z1I1F100", 32, 32, 0}, AnswerCase{"G2X2.001R1F100", 34, 34, 34},
+                                         AnswerCase{"G2X0R1F100", 33, 33, 33}, AnswerCase{"G2X2I1.004F100", 33, 33, 33},
+                                         AnswerCase{"G2X2I1.0004F100", 0, 0, 0}, AnswerCase{"G2X2I1P2F100", 36, 36, 0},
+                                         AnswerCase{"G2X2I1P0F100", 36, 36, 39}, AnswerCase{"G90.1", 20, 20, 20},
+                                         AnswerCase{"G91.1G2X2I1F100", 0, 0, 0}, AnswerCase{"G2X2I1", 22, 22, 22}));
+
+INSTANTIATE_TEST_SUITE_P(Offsets, Answers,
+                         testing::Values(AnswerCase{"G10L2P1X1", 0, 0, 0}, AnswerCase{"G10L2P7X1", 29, 29, 0},
+                                         AnswerCase{"G10L2P10X1", 29, 29, 29}, AnswerCase{"G10L3P9X1", 29, 20, 20},
+                                         AnswerCase{"G10", 26, 26, 20}, AnswerCase{"G10L2P1R1X1", 20, 20, 20},
+                                         AnswerCase{"G10L1P1Z1", 20, 20, 20}, AnswerCase{"G92", 26, 26, 26},
+                                         AnswerCase{"G92.2", 20, 20, 0}, AnswerCase{"G28.2", 20, 20, 20}));
+
+INSTANTIATE_TEST_SUITE_P(Cycles, Answers,
+                         testing::Values(AnswerCase{"G81X1Z-1R1F100", 20, 20, 0}, AnswerCase{"G81", 20, 20, 22},
+                                         AnswerCase{"G81X1Z-1F100", 20, 20, 28}, AnswerCase{"G82X1Z-1R1F1", 20, 20, 28},
+                                         AnswerCase{"G83X1Z-2R1Q-1F100", 20, 20, 4},
+                                         AnswerCase{"G81X1Z1R0F100", 20, 20, 54},
+                                         AnswerCase{"G81Z-1R1L0F1", 20, 20, 19},
+                                         AnswerCase{"G84X1Z-1R1P1F1", 20, 20, 20}, AnswerCase{"G98", 20, 20, 0}));
+
+INSTANTIATE_TEST_SUITE_P(Comments, Answers,
+                         testing::Values(AnswerCase{"(unclosed", 0, 0, 0}, AnswerCase{")", 1, 0, 0},
+                                         AnswerCase{"%", 1, 0, 0}, AnswerCase{"%G0", 1, 0, 1},
+                                         AnswerCase{"/G0X1", 0, 1, 0}, AnswerCase{"//", 0, 1, 1},
+                                         AnswerCase{"G0(x)(y)X1", 0, 0, 0}, AnswerCase{"", 0, 0, 0},
+                                         AnswerCase{"G0X1*71", 1, 1, 1}, AnswerCase{"#1=5", 1, 1, 1},
+                                         AnswerCase{"G0X[1]", 2, 2, 2}));
+
+TEST(Interpreter, LinesAreTargetsInMachineCoordinates) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    EXPECT_EQ(bench.send("G10L2P2X10Y20"), 0);
+    EXPECT_EQ(bench.send("G55G0X1Z-3"), 0);
+    EXPECT_EQ(bench.send("G91G1Y2F120"), 0);
+    const auto lines = bench.all<LinearMove>();
+    ASSERT_EQ(lines.size(), 2U);
+    EXPECT_EQ(lines[0].target_mm, (AxisValues{11, 0, -3}));
+    EXPECT_TRUE(lines[0].feed.rapid);
+    EXPECT_EQ(lines[1].target_mm, (AxisValues{11, 2, -3}));
+    EXPECT_EQ(lines[1].feed.rate_mm_per_min, 120.0F);
+    EXPECT_EQ(bench.state().position_mm, lines[1].target_mm);
+  }
+}
+
+TEST(Interpreter, InchesScaleWordsButNotTheKeptFeed) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    EXPECT_EQ(bench.send("F100"), 0);
+    EXPECT_EQ(bench.send("G20G1X1"), 0);
+    EXPECT_EQ(bench.send("X2F10"), 0);
+    const auto lines = bench.all<LinearMove>();
+    EXPECT_EQ(lines[0].target_mm[0], 25.4F);
+    EXPECT_EQ(lines[0].feed.rate_mm_per_min, 100.0F);
+    EXPECT_EQ(lines[1].feed.rate_mm_per_min, 254.0F);
+  }
+}
+
+TEST(Interpreter, FeedIsForgottenBetweenModes) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    EXPECT_EQ(bench.send("G1X1F100"), 0);
+    EXPECT_EQ(bench.send("G93X2F2"), 0);
+    EXPECT_EQ(bench.send("G94X3"), 22);
+  }
+}
+
+TEST(Interpreter, ArcsByCenterAndByRadiusAgree) {
+  for (const Firmware firmware : kAll) {
+    for (const char* line : {"G2X2Y0I1J0F100", "G2X2Y0R1F100"}) {
+      Bench bench(firmware);
+      EXPECT_EQ(bench.send(line), 0);
+      const auto arc = bench.all<ArcMove>().at(0);
+      EXPECT_FLOAT_EQ(arc.center_offset_mm[0], 1.0F);
+      EXPECT_NEAR(arc.center_offset_mm[1], 0.0F, 1e-6F);
+      EXPECT_FLOAT_EQ(arc.radius_mm, 1.0F);
+      EXPECT_TRUE(arc.clockwise);
+      EXPECT_EQ(arc.turns, 1);
+    }
+  }
+}
+
+TEST(Interpreter, ArcPlanes) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    EXPECT_EQ(bench.send("G18G3X2Z4I1K2F100"), 0);
+    const auto arc = bench.all<ArcMove>().at(0);
+    EXPECT_EQ(arc.plane, Plane::ZX);
+    EXPECT_EQ(arc.center_offset_mm, (std::array<float, 2>{2, 1}));
+    EXPECT_FALSE(arc.clockwise);
+  }
+}
+
+TEST(Interpreter, HalfCircleByRadiusDependsOnTheFloats) {
+  // motion.md 1.4: from X0.1 back through a half circle of radius 0.1. In single floats the square under the root is
+  // not negative.
+  const auto answer = [](Firmware firmware) {
+    Bench bench(firmware);
+    EXPECT_EQ(bench.send("G0X0.1"), 0);
+    return bench.send("G3X-0.1Y0R0.1F100");
+  };
+  EXPECT_EQ(answer(Firmware::Grbl), 0);
+  EXPECT_EQ(answer(Firmware::Rabbit), 34);
+}
+
+TEST(Interpreter, GrblHalTurnsAndFullCircles) {
+  Bench bench(Firmware::GrblHal);
+  EXPECT_EQ(bench.send("G2I5P3F100"), 0);
+  const auto arc = bench.all<ArcMove>().at(0);
+  EXPECT_EQ(arc.turns, 3);
+  EXPECT_EQ(arc.target_mm, AxisValues{});
+}
+
+TEST(Interpreter, OffsetsFollowThePosition) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    bench.send("G0X10Y5Z2");
+    EXPECT_EQ(bench.send("G92X0"), 0);
+    EXPECT_EQ(bench.interpreter.offsets().g92[0], 10.0F);
+    EXPECT_EQ(bench.send("G43.1Z1"), 0);
+    EXPECT_EQ(bench.send("G10L20P1X4Z0"), 0);
+    EXPECT_EQ(bench.interpreter.offsets().work[0][0], -4.0F);
+    EXPECT_EQ(bench.interpreter.offsets().work[0][2], 1.0F);
+    EXPECT_EQ(bench.interpreter.work_coordinate_offset(), (AxisValues{6, 0, 2}));
+    EXPECT_EQ(bench.send("G92.1"), 0);
+    EXPECT_EQ(bench.interpreter.offsets().g92, AxisValues{});
+    EXPECT_EQ(bench.all<StoredOffsetWrite>().at(firmware == Firmware::GrblHal ? 1 : 0).which, StoredOffset::G54);
+  }
+}
+
+TEST(Interpreter, GrblHalG92CanBeSuspended) {
+  Bench bench(Firmware::GrblHal);
+  bench.send("G92X-5");
+  EXPECT_EQ(bench.send("G92.2"), 0);
+  EXPECT_EQ(bench.interpreter.offsets().g92[0], 0.0F);
+  EXPECT_EQ(bench.send("G92.3"), 0);
+  EXPECT_EQ(bench.interpreter.offsets().g92[0], 5.0F);
+}
+
+TEST(Interpreter, StoredPlaces) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    bench.send("G0X5Y6Z7");
+    EXPECT_EQ(bench.send("G28.1"), 0);
+    bench.send("G0X0Y0Z0");
+    bench.actions.clear();
+    EXPECT_EQ(bench.send("G28X1"), 0);
+    const auto lines = bench.all<LinearMove>();
+    ASSERT_EQ(lines.size(), 2U);
+    EXPECT_EQ(lines[0].target_mm, (AxisValues{1, 0, 0}));
+    EXPECT_EQ(lines[1].target_mm, (AxisValues{5, 0, 0}));
+    EXPECT_EQ(bench.state().position_mm, lines[1].target_mm);
+  }
+}
+
+TEST(Interpreter, ProgramEndResetsTheModes) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    bench.send("G10L2P2X1");
+    bench.send("G55G18G91G20M3S100M8G93F1");
+    EXPECT_EQ(bench.send("M30"), 0);
+    ModalState expected;
+    expected.motion = MotionMode::Linear;
+    expected.inches = true;
+    EXPECT_EQ(bench.state().modal, expected);
+    EXPECT_EQ(bench.state().spindle_rpm, 100.0F);
+    EXPECT_EQ(bench.state().work_offset_mm, AxisValues{});
+    EXPECT_EQ(bench.all<ProgramEnd>().at(0).restores_overrides, firmware != Firmware::GrblHal);
+  }
+}
+
+TEST(Interpreter, SpindleAndCoolant) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    EXPECT_EQ(bench.send("M3S500"), 0);
+    EXPECT_EQ(bench.send("S700"), 0);
+    EXPECT_EQ(bench.send("M5"), 0);
+    EXPECT_EQ(bench.actions.at(0), Action(SpindleChange{SpindleDirection::Clockwise, 500.0F}));
+    EXPECT_EQ(bench.actions.at(1), Action(SpindleSpeedChange{700.0F}));
+    EXPECT_EQ(bench.actions.at(2), Action(SpindleChange{SpindleDirection::Off, 700.0F}));
+    bench.actions.clear();
+    bench.send("M8");
+    bench.send("M9");
+    bench.send("M9");
+    EXPECT_EQ(bench.all<CoolantChange>().size(), firmware == Firmware::Rabbit ? 3U : 2U);
+  }
+}
+
+TEST(Interpreter, LaserChangesPowerWithTheMotion) {
+  Bench bench(Firmware::Grbl, {.laser_mode = true});
+  bench.send("M4S100");
+  bench.actions.clear();
+  bench.send("G1X1F100S200");
+  bench.send("G0X2");
+  EXPECT_TRUE(bench.all<SpindleSpeedChange>().empty());
+  const auto lines = bench.all<LinearMove>();
+  EXPECT_EQ(lines[0].feed.spindle_rpm, 200.0F);
+  EXPECT_TRUE(lines[0].feed.laser_dynamic);
+  EXPECT_EQ(lines[1].feed.spindle_rpm, 0.0F);
+}
+
+TEST(Interpreter, ConstantLaserPowerIsOffWithoutCuttingMode) {
+  Bench bench(Firmware::Grbl, {.laser_mode = true});
+  bench.send("G1F100M3S100");
+  bench.actions.clear();
+  bench.send("G0");
+  EXPECT_EQ(bench.all<SpindleSpeedChange>().at(0).rpm, 0.0F);
+}
+
+TEST(Interpreter, ToolWords) {
+  Bench grbl(Firmware::Grbl);
+  grbl.send("T3");
+  EXPECT_EQ(grbl.state().tool, 3U);
+  grbl.send("G0");
+  EXPECT_EQ(grbl.state().tool, 0U);
+
+  Bench rabbit(Firmware::Rabbit);
+  EXPECT_EQ(rabbit.send("T3G99"), 20);
+  EXPECT_EQ(rabbit.state().tool, 3U);
+
+  Bench grblhal(Firmware::GrblHal);
+  grblhal.send("T3");
+  EXPECT_EQ(grblhal.state().tool, 0U);
+  EXPECT_EQ(grblhal.send("M6"), 0);
+  EXPECT_EQ(grblhal.all<ToolChange>().at(0).tool, 3);
+  EXPECT_EQ(grblhal.send("G0X1"), 40);
+  grblhal.interpreter.complete_tool_change();
+  EXPECT_EQ(grblhal.state().tool, 0U) << "the failed line dropped the new tool";
+  grblhal.send("M6");
+  grblhal.interpreter.complete_tool_change();
+  EXPECT_EQ(grblhal.state().tool, 3U);
+  EXPECT_EQ(grblhal.send("M6T3"), 0);
+  EXPECT_FALSE(grblhal.state().tool_change_pending);
+}
+
+TEST(Interpreter, GrblHalMessages) {
+  Bench bench(Firmware::GrblHal);
+  EXPECT_EQ(bench.send("(MSG, Mind the gap)"), 0);
+  EXPECT_EQ(bench.send("G0X1 (msg,x)(MSG,y) ; (MSG,z)"), 0);
+  EXPECT_EQ(bench.send("G0X (MSG,never)"), 2);
+  const auto messages = bench.all<OperatorMessage>();
+  ASSERT_EQ(messages.size(), 2U);
+  EXPECT_EQ(messages[0].text, "Mind the gap");
+  EXPECT_EQ(messages[1].text, "x");
+}
+
+TEST(Interpreter, GrblHalBlockDeleteAndOptionalStop) {
+  Bench bench(Firmware::GrblHal);
+  bench.send("M1");
+  EXPECT_EQ(bench.all<ProgramPause>().size(), 1U);
+  bench.interpreter.settings().optional_stop_disabled = true;
+  bench.interpreter.settings().block_delete = true;
+  bench.send("M1");
+  bench.send("/M0");
+  EXPECT_EQ(bench.all<ProgramPause>().size(), 1U);
+}
+
+TEST(Interpreter, GrblHalOverrideControl) {
+  Bench bench(Firmware::GrblHal);
+  bench.send("M48");
+  EXPECT_TRUE(bench.actions.empty());
+  bench.send("M50P0");
+  bench.send("G1X1F100");
+  EXPECT_FALSE(bench.all<OverrideControl>().at(0).feed_enabled);
+  EXPECT_TRUE(bench.all<LinearMove>().at(0).feed.no_override);
+}
+
+TEST(Interpreter, GrblHalDrillsAndRepeats) {
+  Bench bench(Firmware::GrblHal);
+  EXPECT_EQ(bench.send("G81X1Z-1R1F100"), 0);
+  EXPECT_EQ(bench.send("X2"), 0);
+  EXPECT_EQ(bench.send("G80"), 0);
+  std::vector<float> heights;
+  for (const LinearMove& line : bench.all<LinearMove>()) heights.push_back(line.target_mm[2]);
+  EXPECT_EQ(heights, (std::vector<float>{1, 1, -1, 1, 1, -1, 1}));
+  EXPECT_EQ(bench.state().position_mm, (AxisValues{2, 0, 1}));
+}
+
+TEST(Interpreter, GrblHalPecksWithDwell) {
+  Bench bench(Firmware::GrblHal);
+  EXPECT_EQ(bench.send("G73Z-2R0Q1F100"), 0);
+  std::vector<float> heights;
+  for (const LinearMove& line : bench.all<LinearMove>()) heights.push_back(line.target_mm[2]);
+  EXPECT_EQ(heights, (std::vector<float>{0, -1, -0.9F, -2, 0}));
+  EXPECT_EQ(bench.all<Dwell>().size(), 2U);
+}
+
+TEST(Interpreter, GrblHalScales) {
+  Bench bench(Firmware::GrblHal);
+  EXPECT_EQ(bench.send("G51X10P2"), 0);
+  EXPECT_EQ(bench.send("G0X11Y1"), 0);
+  EXPECT_EQ(bench.state().position_mm, (AxisValues{12, 2, 0}));
+  EXPECT_EQ(bench.send("G50"), 0);
+  EXPECT_EQ(bench.send("G0X11"), 0);
+  EXPECT_EQ(bench.state().position_mm[0], 11.0F);
+}
+
+TEST(Interpreter, GrblHalSplinesEndAtTheTarget) {
+  Bench bench(Firmware::GrblHal);
+  EXPECT_EQ(bench.send("G5X10Y10I3J0P0Q-3F100"), 0);
+  const auto lines = bench.all<LinearMove>();
+  ASSERT_GT(lines.size(), 5U);
+  EXPECT_EQ(lines.back().target_mm, (AxisValues{10, 10, 0}));
+  EXPECT_EQ(bench.send("G5X20Y10I1P1Q1"), 0);
+  EXPECT_EQ(bench.send("G5.1X20Y10I1"), 28);
+}
+
+TEST(Interpreter, GrblHalModalMacroFailsAfterTheMotion) {
+  Bench bench(Firmware::GrblHal);
+  EXPECT_EQ(bench.send("G66P1"), 0);
+  EXPECT_EQ(bench.send("G0X1"), 39);
+  EXPECT_EQ(bench.all<LinearMove>().size(), 1U);
+  EXPECT_EQ(bench.send("G0X2"), 0) << "any failure ends G66";
+}
+
+TEST(Interpreter, GrblHalSavesAndRestoresModes) {
+  Bench bench(Firmware::GrblHal);
+  bench.send("G91G18F100G55");
+  bench.send("M70");
+  bench.send("G90G17F200G54");
+  EXPECT_EQ(bench.send("M72"), 0);
+  EXPECT_TRUE(bench.state().modal.incremental);
+  EXPECT_EQ(bench.state().modal.plane, Plane::ZX);
+  EXPECT_EQ(bench.state().modal.work_offset, 1);
+  EXPECT_EQ(bench.state().feed_rate, 100.0F);
+}
+
+TEST(Interpreter, Jogs) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    bench.send("G0X5");
+    const auto jog = bench.interpreter.interpret_jog("G91G20X1F10");
+    ASSERT_TRUE(jog);
+    EXPECT_FLOAT_EQ(jog->target_mm[0], 30.4F);
+    EXPECT_EQ(jog->feed.rate_mm_per_min, 254.0F);
+    EXPECT_EQ(bench.state().position_mm[0], 5.0F) << "until the owner accepts it";
+    EXPECT_FALSE(bench.state().modal.incremental);
+
+    const auto code = [&bench](std::string_view text) {
+      return static_cast<int>(bench.interpreter.interpret_jog(text).error());
+    };
+    EXPECT_EQ(code(""), 22);
+    EXPECT_EQ(code("G91X1"), 22);
+    EXPECT_EQ(code("G91X1F100S1"), 36);
+    EXPECT_EQ(code("G91X1F100M3"), 16);
+    EXPECT_EQ(code("G92X1F100"), 16);
+    EXPECT_EQ(code("X"), 2);
+  }
+}
+
+TEST(Interpreter, ResetKeepsWhatTheFirmwareKeeps) {
+  for (const Firmware firmware : kAll) {
+    const bool keeps = firmware == Firmware::GrblHal;
+    Bench bench(firmware);
+    bench.send(keeps ? "M61Q2" : "T2");
+    bench.send("G0X1T2");
+    bench.send("G92X0T2");
+    bench.send("G43.1Z3T2");
+    bench.interpreter.reset();
+    EXPECT_EQ(bench.state().modal, ModalState{});
+    EXPECT_EQ(bench.state().position_mm[0], 1.0F);
+    EXPECT_EQ(bench.state().tool, keeps ? 2U : 0U);
+    EXPECT_EQ(bench.interpreter.offsets().g92[0], keeps ? 1.0F : 0.0F);
+    EXPECT_EQ(bench.interpreter.offsets().tool_length[2], keeps ? 3.0F : 0.0F);
+  }
+}
+
+TEST(Interpreter, AxesBeyondThree) {
+  Bench rabbit(Firmware::Rabbit, {.axes = 4});
+  EXPECT_EQ(rabbit.send("G0A90"), 0);
+  EXPECT_EQ(rabbit.send("G0B90"), 20);
+  Bench grblhal(Firmware::GrblHal, {.axes = 5, .rotary_axes = 0x18});
+  EXPECT_EQ(grblhal.send("G20G0X1A90"), 0);
+  EXPECT_EQ(grblhal.state().position_mm[0], 25.4F);
+  EXPECT_EQ(grblhal.state().position_mm[3], 90.0F);
+}
+
+/// Lines out of pieces that are words more often than not.
+rc::Gen<std::string> line_gen() {
+  const std::vector<std::string> pieces = {
+      "G0",    "G1",    "G2",  "G3",  "G4",      "G10",   "G17", "G18",   "G20", "G21",   "G28", "G28.1",
+      "G38.2", "G43.1", "G49", "G51", "G53",     "G54",   "G55", "G59.1", "G66", "G73",   "G80", "G81",
+      "G83",   "G90",   "G91", "G92", "G92.1",   "G92.3", "G93", "G94",   "G99", "M0",    "M2",  "M3",
+      "M5",    "M6",    "M8",  "M9",  "M50",     "M61",   "M70", "M72",   "X1",  "X-2.5", "Y3",  "Z-1",
+      "A1",    "I1",    "J1",  "K0",  "R1",      "R-2",   "P1",  "P0",    "Q1",  "L2",    "L20", "F100",
+      "F0",    "S500",  "T1",  "N5",  "(MSG,a)", "/",     "%",   ";",     " ",   "#",     "5"};
+  return rc::gen::map(rc::gen::container<std::vector<std::string>>(rc::gen::elementOf(pieces)),
+                      [](const std::vector<std::string>& chosen) {
+                        std::string line;
+                        for (const std::string& piece : chosen) line += piece;
+                        return line;
+                      });
+}
+
+/// What grblHAL and Rabbit change although they reject the line, taken out of the comparison.
+ParserState without_slips(ParserState state, const ParserState& before) {
+  state.tool = before.tool;
+  state.feed_rate = before.feed_rate;
+  state.canned = before.canned;
+  state.scale_center_mm = before.scale_center_mm;
+  state.scale_factor = before.scale_factor;
+  state.modal.scaling = before.modal.scaling;
+  state.modal_macro = before.modal_macro;
+  state.arriving_tool = before.arriving_tool;
+  return state;
+}
+
+RC_GTEST_PROP(InterpreterProperty, RejectionLeavesTheStateAlone, ()) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    for (const std::string& line : *rc::gen::container<std::vector<std::string>>(line_gen())) {
+      const ParserState before = bench.state();
+      const Offsets offsets = bench.interpreter.offsets();
+      const std::vector<Action> actions = bench.actions;
+      const bool macro_after_motion = before.modal_macro;
+      if (bench.send(line) == 0 || macro_after_motion) continue;
+      RC_ASSERT(without_slips(bench.state(), before) == before);
+      RC_ASSERT(bench.interpreter.offsets() == offsets);
+      RC_ASSERT(bench.actions == actions);
+      if (firmware == Firmware::Grbl) RC_ASSERT(bench.state() == before);
+    }
+  }
+}
+
+RC_GTEST_PROP(InterpreterProperty, TakesAnyBytes, (const std::vector<std::string>& lines)) {
+  for (const Firmware firmware : kAll) {
+    Bench bench(firmware);
+    for (const std::string& line : lines) {
+      bench.send(line);
+      (void)bench.interpreter.interpret_jog(line);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kerf::gcode
