@@ -189,14 +189,14 @@ void Executor::load_or_stop() {
   const Instant at = instant_of(segment_end_);
   report_finished_block(at);
   if (segment_count_ == 0) {
-    const bool waits = rules_.idle_lock_blocks && planner_.settings().idle_delay_ms != 255 &&
-                       !(preparer_.in_system_motion() && system_kind_ == SystemMotion::Homing);
-    if (!waits) {
+    const bool homes = preparer_.in_system_motion() && system_kind_ == SystemMotion::Homing;
+    const Duration wait = homes ? Duration::zero() : lock_delay();
+    if (wait == Duration::zero()) {
       stop(at);
-      return;
+    } else {
+      stage_ = Stage::Locking;
+      locked_until_ = at + wait;
     }
-    stage_ = Stage::Locking;
-    locked_until_ = at + std::chrono::milliseconds{planner_.settings().idle_delay_ms};
     return;
   }
   current_ = segments_[first_segment_];
@@ -264,6 +264,13 @@ const StepBlock* Executor::executing() const {
   return steps && cursor_.block().id != 0 ? &cursor_.block() : nullptr;
 }
 
+Duration Executor::lock_delay() const {
+  constexpr std::uint8_t kMotorsStayOn = 255;
+  const std::uint8_t delay_ms = planner_.settings().idle_delay_ms;
+  const bool waits = rules_.idle_lock_blocks && delay_ms != kMotorsStayOn;
+  return waits ? Duration{std::chrono::milliseconds{delay_ms}} : Duration::zero();
+}
+
 void Executor::watch(const StepThreshold& threshold) {
   watches_.push_back({.threshold = threshold});
   place(watches_.back());
@@ -294,8 +301,7 @@ void Executor::place(Watch& watch) const {
   // The interrupt that decides tick n (from 1) runs n - 1 periods after the segment's start; the probe is read by the
   // next one.
   const std::int64_t periods = threshold.seen_by_step_interrupt ? ticks : std::max<std::int64_t>(ticks - 1, 0);
-  const std::int64_t last = threshold.seen_by_step_interrupt ? current_.ticks - 1 : std::int64_t{current_.ticks} - 1;
-  if (periods > last) return;
+  if (periods > std::int64_t{current_.ticks} - 1) return;
   watch.seen_at = std::max(segment_start_ + periods * period, counts_at(now_));
 }
 

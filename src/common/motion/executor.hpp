@@ -111,6 +111,14 @@ class Executor {
   /// Spindle speed that the executing segment asks for in laser M4 mode, overrides not applied.
   [[nodiscard]] std::optional<float> dynamic_rpm() const;
 
+  /// How long a stop or a reset outside homing keeps Grbl's main program in a busy wait (`$1`); zero elsewhere, and
+  /// with 255.
+  [[nodiscard]] Duration lock_delay() const;
+  /// The motors rest, and that wait is under way until MotionEnded or HoldComplete: lines and realtime commands lie
+  /// still.
+  [[nodiscard]] bool is_locking() const { return stage_ == Stage::Locking; }
+
+  /// Reports a contact once, while moving. A threshold that is met already counts at the next step of the motion.
   void watch(const StepThreshold& threshold);
   void clear_watches();
   /// Homing: these motors no longer move, though the reported position counts on. Replaces the previous mask.

@@ -232,6 +232,29 @@ TEST(Executor, IdleLockDelaysTheEndOnGrblOnly) {
   }
 }
 
+TEST(Executor, GrblsMainProgramWaitsForTheLock) {
+  MotionSettings settings = plain_settings();
+  settings.idle_delay_ms = 25;
+  Machine machine(Firmware::Grbl, settings);
+  machine.move(line_to({25}, feed(6000)));
+  machine.run(at_s(1.01));
+  EXPECT_TRUE(machine.executor.is_locking());
+  EXPECT_EQ(machine.executor.phase(), ExecutorPhase::Running);
+  EXPECT_EQ(machine.all<BlockFinished>().size(), 1U);
+  machine.run();
+  EXPECT_FALSE(machine.executor.is_locking());
+}
+
+TEST(MotionRules, DwellsLastWholeSteps) {
+  using std::chrono::milliseconds;
+  EXPECT_EQ(dwell_duration(rules_of(Firmware::Grbl), 0.001F), milliseconds{50});
+  EXPECT_EQ(dwell_duration(rules_of(Firmware::GrblHal), 0.333F), milliseconds{350});
+  EXPECT_EQ(dwell_duration(rules_of(Firmware::Rabbit), 0.3339F), milliseconds{333});
+  EXPECT_EQ(dwell_duration(rules_of(Firmware::Rabbit), 0.0F), milliseconds{0});
+  EXPECT_EQ(dwell_duration(rules_of(Firmware::Grbl), 3276.8F), milliseconds{0}) << "a counter of 16 bits";
+  EXPECT_EQ(dwell_duration(rules_of(Firmware::GrblHal), 3276.8F), milliseconds{3276800});
+}
+
 TEST(Executor, SlowestStepIsTheTimers) {
   // 0.1 mm in 10 steps at 1 mm/min would be 0.6 s a step; the AVR timer gives 32.8 ms, the ESP32's 26.2 ms.
   for (const auto& [firmware, step_s] :

@@ -1,11 +1,14 @@
 #include "common/motion/rules.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace kerf::motion {
 
 namespace {
 
 // gnea/grbl config.h, planner.h, stepper.h (ATmega328 at 16 MHz).
-constexpr MotionRules kGrbl{.idle_lock_blocks = true};
+constexpr MotionRules kGrbl{.idle_lock_blocks = true, .dwell_mask = 0xFFFF};
 
 // RabbitGRBL Config.h, Planner.h, Stepper.h (ESP32).
 constexpr MotionRules kRabbit{.float_rule = FloatRule::DoubleLiterals,
@@ -14,7 +17,8 @@ constexpr MotionRules kRabbit{.float_rule = FloatRule::DoubleLiterals,
                               .wake_waits_last_period = true,
                               .acceleration_converted_last = true,
                               .override_ramp_ends_by_distance = true,
-                              .dwell_step = std::chrono::milliseconds{1}};
+                              .dwell_step = std::chrono::milliseconds{1},
+                              .dwell_rounds_down = true};
 
 // grblHAL core config.h, planner.c, stepper.c; the step timer is the driver's, here the simulator's.
 constexpr MotionRules kGrblHal{.planner_blocks = 100,
@@ -42,6 +46,14 @@ const MotionRules& rules_of(vocabulary::Firmware firmware) {
     case vocabulary::Firmware::GrblHal: return kGrblHal;
   }
   return kGrbl;
+}
+
+Duration dwell_duration(const MotionRules& rules, float dwell_s) {
+  const auto steps_per_s = static_cast<float>(std::chrono::seconds{1} / rules.dwell_step);
+  const float steps = rules.dwell_rounds_down ? std::trunc(dwell_s * steps_per_s) : std::ceil(steps_per_s * dwell_s);
+  constexpr float kMost = 4.0E9F;
+  if (!(steps > 0.0F)) return Duration::zero();
+  return rules.dwell_step * (static_cast<std::uint32_t>(std::min(steps, kMost)) & rules.dwell_mask);
 }
 
 }  // namespace kerf::motion

@@ -74,12 +74,19 @@ struct MotionRules {
   std::uint32_t arc_chord_mask = 0xFFFF;
   /// Dwells last a whole number of these (50 ms on Grbl and grblHAL, 1 ms on Rabbit).
   Duration dwell_step = std::chrono::milliseconds{50};
+  /// True: a dwell is cut down to whole steps (Rabbit); else it is rounded up.
+  bool dwell_rounds_down = false;
+  /// Bits of the dwell counter: 16 on Grbl, where G4P3276.8 is no dwell at all.
+  std::uint32_t dwell_mask = 0xFFFF'FFFF;
 
   bool operator==(const MotionRules&) const = default;
 };
 
 /// The rules of `firmware`; those of Grbl for an unknown one.
 [[nodiscard]] const MotionRules& rules_of(vocabulary::Firmware firmware);
+
+/// How long G4 P`dwell_s` lasts, once the motion before it has ended (gnea/grbl nuts_bolts.c; motion.md 1.5).
+[[nodiscard]] Duration dwell_duration(const MotionRules& rules, float dwell_s);
 
 /// `$` settings that shape motion, in the units of the settings.
 struct MotionSettings {
