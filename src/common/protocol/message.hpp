@@ -64,7 +64,7 @@ struct Overrides {
 /// `H:1` or `H:1,7`: all axes that have to be homed are; the mask of those that are, if the controller tells.
 struct Homed {
   bool homed{};
-  std::optional<int> axis_mask;
+  std::optional<int> axis_mask{};
   friend bool operator==(const Homed&, const Homed&) = default;
 };
 
@@ -79,15 +79,15 @@ struct ProbeState {
 struct ExtraSpindle {
   int number{};
   double spindle_rpm{};
-  std::string direction;
-  std::optional<int> override_percent;
+  std::string direction{};
+  std::optional<int> override_percent{};
   friend bool operator==(const ExtraSpindle&, const ExtraSpindle&) = default;
 };
 
 /// A field that nobody here knows, or whose value is not what its name promises.
 struct UnknownField {
-  std::string name;
-  std::string value;
+  std::string name{};
+  std::string value{};
   friend bool operator==(const UnknownField&, const UnknownField&) = default;
 };
 
@@ -95,103 +95,103 @@ struct UnknownField {
 /// that `$13` chose, in axis order.
 struct StatusReport {
   MachineState state = MachineState::Unknown;
-  std::optional<int> substate;
+  std::optional<int> substate{};
   /// The state as printed, where it is not a name that we know with an optional number.
-  std::string odd_state;
-  std::optional<std::vector<double>> machine_position;
-  std::optional<std::vector<double>> work_position;
-  std::optional<BufferState> buffer;
-  std::optional<std::int32_t> line_number;
-  std::optional<std::vector<double>> distance_to_go;
-  std::optional<double> feed_mm_per_min;  ///< in inches per minute if `$13` is 1
-  std::optional<double> spindle_rpm;      ///< absent with `F:`, a build without variable spindle
-  std::optional<double> measured_rpm;
-  std::vector<ExtraSpindle> extra_spindles;
-  std::optional<int> active_spindle;
-  std::optional<std::string> pins;
-  std::optional<std::vector<double>> work_offset;
-  std::optional<std::string> wcs;
-  std::optional<Overrides> overrides;
-  std::optional<std::string> accessories;  ///< may be empty: all off
-  std::optional<std::string> scaled_axes;
-  std::optional<int> auto_report_ms;  ///< 0 for a bare `AR`: configured but switched off
-  std::optional<bool> mpg;
-  std::optional<Homed> homed;
-  std::optional<bool> diameter;
-  std::optional<int> tool;
-  std::optional<ProbeState> probe;
-  std::optional<bool> tlr;
-  std::optional<int> input_result;
-  std::optional<std::string> firmware;
-  std::optional<bool> critical;
-  std::vector<UnknownField> unknown;
+  std::string odd_state{};
+  std::optional<std::vector<double>> machine_position{};
+  std::optional<std::vector<double>> work_position{};
+  std::optional<BufferState> buffer{};
+  std::optional<std::int32_t> line_number{};
+  std::optional<std::vector<double>> distance_to_go{};
+  std::optional<double> feed_mm_per_min{};  ///< in inches per minute if `$13` is 1
+  std::optional<double> spindle_rpm{};      ///< absent with `F:`, a build without variable spindle
+  std::optional<double> measured_rpm{};
+  std::vector<ExtraSpindle> extra_spindles{};
+  std::optional<int> active_spindle{};
+  std::optional<std::string> pins{};
+  std::optional<std::vector<double>> work_offset{};
+  std::optional<std::string> wcs{};
+  std::optional<Overrides> overrides{};
+  std::optional<std::string> accessories{};  ///< may be empty: all off
+  std::optional<std::string> scaled_axes{};
+  std::optional<int> auto_report_ms{};  ///< 0 for a bare `AR`: configured but switched off
+  std::optional<bool> mpg{};
+  std::optional<Homed> homed{};
+  std::optional<bool> diameter{};
+  std::optional<int> tool{};
+  std::optional<ProbeState> probe{};
+  std::optional<bool> tlr{};
+  std::optional<int> input_result{};
+  std::optional<std::string> firmware{};
+  std::optional<bool> critical{};
+  std::vector<UnknownField> unknown{};
   friend bool operator==(const StatusReport&, const StatusReport&) = default;
 };
 
 /// `Grbl 1.1h ['$' for help]`. `line` is what was printed; the other two are read from it.
 struct Welcome {
   Firmware firmware = Firmware::Unknown;  ///< Unknown: of the family, but none of the three
-  std::string version;                    ///< "1.1h"
-  std::string line;
+  std::string version{};                  ///< "1.1h"
+  std::string line{};
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 
 /// `$110=500.000` or `$Homing/Enable=1`: `id` is "110" or "Homing/Enable".
 struct SettingValue {
-  std::string id;
-  std::string value;
+  std::string id{};
+  std::string value{};
   friend bool operator==(const SettingValue&, const SettingValue&) = default;
 };
 
 /// `$N0=G54G21`
 struct StartupLine {
   int index{};
-  std::string block;
+  std::string block{};
   friend bool operator==(const StartupLine&, const StartupLine&) = default;
 };
 
 /// `>G54G21:ok` or `>G99:error:20`; `error_code` 0 is ok.
 struct StartupResult {
-  std::string block;
+  std::string block{};
   int error_code{};
   friend bool operator==(const StartupResult&, const StartupResult&) = default;
 };
 
 /// `[GC:G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]`
 struct ParserState {
-  std::vector<std::string> words;
+  std::vector<std::string> words{};
   friend bool operator==(const ParserState&, const ParserState&) = default;
 };
 
 /// `[G54:0.000,0.000,0.000]`; names G54 to G59.3, G28, G30, G92.
 struct StoredOffset {
-  std::string name;
-  std::vector<double> values;
+  std::string name{};
+  std::vector<double> values{};
   friend bool operator==(const StoredOffset&, const StoredOffset&) = default;
 };
 
 /// `[HOME:0.000,0.000,0.000:7]`
 struct HomePosition {
-  std::vector<double> values;
+  std::vector<double> values{};
   int axis_mask{};
   friend bool operator==(const HomePosition&, const HomePosition&) = default;
 };
 
 /// `[TLO:0.000]` (Grbl, Rabbit) or one value an axis (grblHAL).
 struct ToolLengthOffset {
-  std::vector<double> values;
+  std::vector<double> values{};
   friend bool operator==(const ToolLengthOffset&, const ToolLengthOffset&) = default;
 };
 
 /// `[TLR:12.000]`
 struct ToolLengthReference {
-  std::vector<double> values;
+  std::vector<double> values{};
   friend bool operator==(const ToolLengthReference&, const ToolLengthReference&) = default;
 };
 
 /// `[PRB:0.000,0.000,-4.072:1]`, machine coordinates.
 struct ProbeResult {
-  std::vector<double> values;
+  std::vector<double> values{};
   bool success{};
   friend bool operator==(const ProbeResult&, const ProbeResult&) = default;
 };
@@ -199,103 +199,103 @@ struct ProbeResult {
 /// `[T:1|1.000,2.000,3.000|0.500|6,0,0|name|1]`. `geometry` is kept as printed.
 struct ToolRow {
   int tool{};
-  std::vector<double> offsets;
+  std::vector<double> offsets{};
   double radius{};
-  std::string geometry;
-  std::string name;
-  std::string pocket;
+  std::string geometry{};
+  std::string name{};
+  std::string pocket{};
   friend bool operator==(const ToolRow&, const ToolRow&) = default;
 };
 
 /// `[G51:1.000,2.000,1.000]`: scale factors.
 struct ScaledAxes {
-  std::vector<double> factors;
+  std::vector<double> factors{};
   friend bool operator==(const ScaledAxes&, const ScaledAxes&) = default;
 };
 
 /// `[PARAM:5220=1]` or `[PARAM:_vmajor=1.1]`
 struct NamedParameter {
-  std::string name;
-  std::string value;
+  std::string name{};
+  std::string value{};
   friend bool operator==(const NamedParameter&, const NamedParameter&) = default;
 };
 
 /// `[VER:1.1f.20260817:user text]`; Rabbit's row has no place for a text.
 struct Version {
-  std::string version;
-  std::string build;
-  std::string user_text;
+  std::string version{};
+  std::string build{};
+  std::string user_text{};
   bool has_user_text{};
   friend bool operator==(const Version&, const Version&) = default;
 };
 
 /// `[OPT:VNML+,100,1024,3,0]`; Rabbit prints letters only.
 struct BuildOptions {
-  std::string letters;
-  std::optional<int> planner_blocks;
-  std::optional<int> rx_bytes;
-  std::optional<int> axes;
-  std::optional<int> tools;
+  std::string letters{};
+  std::optional<int> planner_blocks{};
+  std::optional<int> rx_bytes{};
+  std::optional<int> axes{};
+  std::optional<int> tools{};
   friend bool operator==(const BuildOptions&, const BuildOptions&) = default;
 };
 
 /// `[AXS:3:XYZ]`
 struct AxisNames {
   int count{};
-  std::string letters;
+  std::string letters{};
   friend bool operator==(const AxisNames&, const AxisNames&) = default;
 };
 
 /// `[NEWOPT:ENUMS,RT+,TC,SED]`
 struct NewOptions {
-  std::vector<std::string> flags;
+  std::vector<std::string> flags{};
   friend bool operator==(const NewOptions&, const NewOptions&) = default;
 };
 
 /// `[FIRMWARE:grblHAL]`
 struct FirmwareName {
-  std::string name;
+  std::string name{};
   friend bool operator==(const FirmwareName&, const FirmwareName&) = default;
 };
 
 /// `[BOARD:x]`, `[NVS STORAGE:*EEPROM]`, `[LIMITS:,,,]`: every `[KEY:value]` that has no type of its own.
 struct BuildRow {
-  std::string key;
-  std::string value;
+  std::string key{};
+  std::string value{};
   friend bool operator==(const BuildRow&, const BuildRow&) = default;
 };
 
 /// `[MSG:Caution: Unlocked]`; the text may be empty and may contain `]`.
 struct Feedback {
-  std::string text;
+  std::string text{};
   friend bool operator==(const Feedback&, const Feedback&) = default;
 };
 
 /// `[HLP:$$ $# $G]`
 struct HelpRow {
-  std::string text;
+  std::string text{};
   friend bool operator==(const HelpRow&, const HelpRow&) = default;
 };
 
 /// `[echo: G0X1]` of debug builds.
 struct Echo {
-  std::string text;
+  std::string text{};
   friend bool operator==(const Echo&, const Echo&) = default;
 };
 
 /// `[ALARMCODE:1|title|text]`, also spelled `[ALARM:`; grblHAL leaves the title empty.
 struct AlarmCodeRow {
   int id{};
-  std::string title;
-  std::string text;
+  std::string title{};
+  std::string text{};
   friend bool operator==(const AlarmCodeRow&, const AlarmCodeRow&) = default;
 };
 
 /// `[ERRORCODE:1|title|text]`, also spelled `[ERROR:`.
 struct ErrorCodeRow {
   int id{};
-  std::string title;
-  std::string text;
+  std::string title{};
+  std::string text{};
   friend bool operator==(const ErrorCodeRow&, const ErrorCodeRow&) = default;
 };
 
@@ -303,7 +303,7 @@ struct ErrorCodeRow {
 struct SettingGroupRow {
   int id{};
   int parent{};
-  std::string name;
+  std::string name{};
   friend bool operator==(const SettingGroupRow&, const SettingGroupRow&) = default;
 };
 
@@ -311,12 +311,12 @@ struct SettingGroupRow {
 struct SettingDefinition {
   int id{};
   int group{};
-  std::string name;
-  std::string unit;
+  std::string name{};
+  std::string unit{};
   int type{};
-  std::string format;
-  std::string min;
-  std::string max;
+  std::string format{};
+  std::string min{};
+  std::string max{};
   bool reboot{};
   bool allow_null{};
   friend bool operator==(const SettingDefinition&, const SettingDefinition&) = default;
@@ -325,13 +325,13 @@ struct SettingDefinition {
 /// `[SETTINGDESCR:110|text]`; line breaks are the two characters `\n`.
 struct SettingDescription {
   int id{};
-  std::string text;
+  std::string text{};
   friend bool operator==(const SettingDescription&, const SettingDescription&) = default;
 };
 
 /// `[FILE:/part.nc|SIZE:1234]`, `|UNUSABLE` behind; a directory has size -1.
 struct FileRow {
-  std::string path;
+  std::string path{};
   std::int64_t size_bytes{};
   bool unusable{};
   friend bool operator==(const FileRow&, const FileRow&) = default;
@@ -339,7 +339,7 @@ struct FileRow {
 
 /// Anything else: shown and logged, never acted on.
 struct Unrecognized {
-  std::string line;
+  std::string line{};
   friend bool operator==(const Unrecognized&, const Unrecognized&) = default;
 };
 
