@@ -15,7 +15,7 @@ namespace kerf::simulation {
 /// latency.
 struct WireTiming {
   /// Empty: no pacing.
-  std::optional<int> baud;
+  std::optional<int> baud{};
   Duration latency{};
 };
 

@@ -31,7 +31,7 @@ using machine::ResetPolicy;
 
 struct SessionOptions {
   /// What the host knows about the link.
-  streaming::LinkPace link;
+  streaming::LinkPace link{};
   ResetPolicy reset_policy = ResetPolicy::WhenSilentOrIdle;
   /// Ask for the enumerations (`$EA` …) where the controller has them; `false` makes connecting faster.
   bool enumerate = true;

@@ -11,7 +11,7 @@ namespace kerf::streaming {
 /// What limits a link besides the controller's buffer.
 struct LinkPace {
   /// Bits a second of a real serial line, ten of which make a byte; empty where the rate means nothing.
-  std::optional<int> baud;
+  std::optional<int> baud{};
   /// Realtime bytes wait behind everything sent before them (protocol.md 2 and 11, rule 12).
   bool network = false;
 };

@@ -1,0 +1,237 @@
+#include "sender/job/job.hpp"
+
+#include <chrono>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kerf::job {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using vocabulary::MachineState;
+
+class JobTest : public testing::Test {
+ protected:
+  Job make(bool latch = false) { return Job{now_, **Program::load("part.nc", "G1X1\nG1X2\nG1X3\n"), latch}; }
+  machine::Snapshot in(MachineState state, std::optional<int> substate = std::nullopt) {
+    machine::Snapshot snapshot;
+    snapshot.state = state;
+    snapshot.substate = substate;
+    return snapshot;
+  }
+  void answer(Job& job, std::uint32_t line, int code = 0) {
+    job.on_answer(
+        now_, {.file_line = line, .file_offset_after = line * 5, .text = "G1", .error_code = code, .meaning = "No."});
+  }
+
+  Instant now_{};
+};
+
+TEST_F(JobTest, FinishesWithTheSyncAnsweredAndIdleSeen) {
+  auto job = make();
+  answer(job, 1);
+  answer(job, 2);
+  answer(job, 3);
+  job.on_lines_answered(now_);
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::SendSync));
+  job.on_snapshot(now_, in(MachineState::Idle));
+  EXPECT_EQ(job.state().phase, JobPhase::Running);
+  job.on_sync_answered(now_);
+  job.on_snapshot(now_ + 1s, in(MachineState::Idle));
+  EXPECT_EQ(job.state().phase, JobPhase::Finished);
+  EXPECT_EQ(job.state().progress.percent, 100);
+  EXPECT_EQ(job.state().progress.lines_acknowledged, 3U);
+}
+
+TEST_F(JobTest, ResumesOnlyAtRest) {
+  auto job = make();
+  job.hold(now_);
+  EXPECT_EQ(job.state().phase, JobPhase::Holding);
+  job.on_snapshot(now_, in(MachineState::Hold, 1));
+  EXPECT_FALSE(job.can_resume());
+  job.on_snapshot(now_ + 100ms, in(MachineState::Hold, 0));
+  EXPECT_EQ(job.state().phase, JobPhase::Held);
+  ASSERT_TRUE(job.can_resume());
+  job.resume(now_ + 5s);
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::FeedHold, JobOrder::CycleStart));
+  EXPECT_EQ(job.state().phase, JobPhase::Running);
+  // A report from before the cycle start does not hold the job again.
+  job.on_snapshot(now_ + 5s + 10ms, in(MachineState::Hold, 0));
+  EXPECT_EQ(job.state().phase, JobPhase::Running);
+}
+
+TEST_F(JobTest, RepeatsAHoldThatGotLost) {
+  auto job = make();
+  job.hold(now_);
+  job.on_snapshot(now_ + 500ms, in(MachineState::Run));
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::FeedHold));
+  job.on_snapshot(now_ + 1100ms, in(MachineState::Run));
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::FeedHold));
+}
+
+TEST_F(JobTest, OpenDoorCannotBeResumedAClosedOneCan) {
+  auto job = make();
+  job.on_snapshot(now_, in(MachineState::Door, 2));
+  EXPECT_EQ(job.state().phase, JobPhase::Holding);
+  job.on_snapshot(now_, in(MachineState::Door, 1));
+  EXPECT_EQ(job.state().hold_cause, HoldCause::Door);
+  EXPECT_FALSE(job.can_resume());
+  job.on_snapshot(now_, in(MachineState::Door, 0));
+  EXPECT_TRUE(job.can_resume());
+}
+
+TEST_F(JobTest, StopsByHoldStandstillReset) {
+  auto job = make();
+  job.on_snapshot(now_, in(MachineState::Run));
+  job.stop(now_);
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::StopFeeding, JobOrder::FeedHold));
+  job.on_snapshot(now_ + 50ms, in(MachineState::Hold, 1));
+  EXPECT_THAT(job.take_orders(), IsEmpty());
+  job.on_snapshot(now_ + 200ms, in(MachineState::Hold, 0));
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::SoftReset));
+  job.on_welcome(now_ + 300ms);
+  EXPECT_EQ(job.state().phase, JobPhase::Stopped);
+  EXPECT_FALSE(job.state().position_suspect);
+}
+
+TEST_F(JobTest, AStopThatNobodyAnswersResetsAfterAWhile) {
+  auto job = make();
+  job.on_snapshot(now_, in(MachineState::Run));
+  job.stop(now_);
+  Instant now = now_;
+  int resets = 0;
+  for (int wake = 0; wake < 20 && job.next_deadline() != kNever; ++wake) {
+    now = job.next_deadline();
+    job.advance_to(now);
+    for (const auto order : job.take_orders()) resets += order == JobOrder::SoftReset;
+  }
+  EXPECT_EQ(resets, 1);
+  EXPECT_EQ(job.state().phase, JobPhase::Stopped);
+  EXPECT_TRUE(job.state().position_suspect);
+}
+
+TEST_F(JobTest, AbortInMotionLeavesThePositionSuspect) {
+  auto job = make();
+  job.on_snapshot(now_, in(MachineState::Run));
+  job.abort(now_);
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::StopFeeding, JobOrder::SoftReset));
+  job.on_alarm(now_, 3, "");
+  job.on_welcome(now_);
+  EXPECT_EQ(job.state().phase, JobPhase::Stopped);
+  EXPECT_TRUE(job.state().position_suspect);
+}
+
+TEST_F(JobTest, LatchedRepeatsAreLinesNotExecuted) {
+  auto job = make(true);
+  answer(job, 1, 20);
+  EXPECT_EQ(job.state().phase, JobPhase::Draining);
+  EXPECT_TRUE(
+      job.on_answer(now_, {.file_line = 2, .file_offset_after = 10, .text = "G1X2", .error_code = 20, .meaning = ""}));
+  job.on_lines_answered(now_);
+  job.on_snapshot(now_, in(MachineState::Run));
+  EXPECT_EQ(job.state().phase, JobPhase::Draining);
+  job.on_snapshot(now_, in(MachineState::Idle));
+  EXPECT_EQ(job.state().phase, JobPhase::Refused);
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::StopFeeding, JobOrder::ClearLatch));
+  EXPECT_EQ(job.state().refusal->file_line, 1U);
+  EXPECT_EQ(job.state().aftermath.lines_not_executed, 2U);
+  EXPECT_EQ(job.state().aftermath.lines_executed_after_refusal, 0U);
+}
+
+TEST_F(JobTest, WithoutLatchTheLinesBehindAreExecuted) {
+  auto job = make(false);
+  answer(job, 1, 20);
+  answer(job, 2);
+  answer(job, 3);
+  job.on_lines_answered(now_);
+  job.on_snapshot(now_, in(MachineState::Idle));
+  EXPECT_EQ(job.state().phase, JobPhase::Refused);
+  EXPECT_EQ(job.state().aftermath.lines_executed_after_refusal, 2U);
+  EXPECT_EQ(job.state().aftermath.lines_not_executed, 1U);
+}
+
+TEST_F(JobTest, AlarmWaitsForTheAnswersThatStillCome) {
+  auto job = make();
+  job.on_alarm(now_, 5, "Probe found nothing");
+  EXPECT_EQ(job.state().phase, JobPhase::Draining);
+  answer(job, 1);
+  answer(job, 2, 9);
+  job.on_lines_answered(now_);
+  EXPECT_EQ(job.state().phase, JobPhase::Alarmed);
+  EXPECT_FALSE(job.state().refusal);
+  EXPECT_EQ(job.state().alarm_code, 5);
+}
+
+TEST_F(JobTest, AnAlarmSeenInAReportOnlyEndsTheJobToo) {
+  auto job = make();
+  job.on_snapshot(now_, in(MachineState::Alarm, 1));
+  job.advance_to(job.next_deadline());
+  EXPECT_EQ(job.state().phase, JobPhase::Alarmed);
+  EXPECT_TRUE(job.state().position_suspect);
+}
+
+TEST_F(JobTest, AnythingFromOutsideInterrupts) {
+  auto restarted = make();
+  restarted.on_welcome(now_);
+  EXPECT_EQ(restarted.state().phase, JobPhase::Interrupted);
+  auto unplugged = make();
+  unplugged.on_link_closed(now_);
+  EXPECT_EQ(unplugged.state().phase, JobPhase::Interrupted);
+  auto pendant = make();
+  auto snapshot = in(MachineState::Run);
+  snapshot.pendant_in_control = true;
+  pendant.on_snapshot(now_, snapshot);
+  EXPECT_EQ(pendant.state().phase, JobPhase::Interrupted);
+  auto asleep = make();
+  asleep.on_snapshot(now_, in(MachineState::Sleep));
+  EXPECT_EQ(asleep.state().phase, JobPhase::Interrupted);
+}
+
+TEST_F(JobTest, ResetInMotionFromOutsideIsAnInterruption) {
+  auto job = make();
+  job.on_snapshot(now_, in(MachineState::Run));
+  job.on_alarm(now_, 3, "");
+  job.on_lines_lost(2, 2);
+  job.on_lines_answered(now_);
+  EXPECT_EQ(job.state().phase, JobPhase::Draining);
+  job.on_welcome(now_ + 500ms);
+  EXPECT_EQ(job.state().phase, JobPhase::Interrupted);
+  EXPECT_TRUE(job.state().position_suspect);
+  EXPECT_EQ(job.state().aftermath.first_line_not_executed, 2U);
+}
+
+TEST_F(JobTest, NothingLeavesAFinalPhase) {
+  auto job = make();
+  job.on_welcome(now_);
+  static_cast<void>(job.take_orders());
+  const auto state = job.state();
+  job.on_snapshot(now_ + 1s, in(MachineState::Idle));
+  job.on_alarm(now_ + 1s, 1, "");
+  job.hold(now_ + 1s);
+  job.resume(now_ + 1s);
+  job.stop(now_ + 1s);
+  job.abort(now_ + 1s);
+  answer(job, 1, 20);
+  EXPECT_EQ(job.state(), state);
+  EXPECT_THAT(job.take_orders(), IsEmpty());
+}
+
+TEST(ProgressMeter, EstimatesFromThePaceWithoutTheHolds) {
+  ProgressMeter meter;
+  meter.start(Instant{}, 100, 1000);
+  EXPECT_FALSE(meter.at(Instant{10s}).remaining_at_this_pace_s);
+  meter.acknowledge(25, 250);
+  meter.set_held(Instant{10s}, true);
+  meter.set_held(Instant{20s}, false);
+  const auto progress = meter.at(Instant{20s});
+  EXPECT_DOUBLE_EQ(progress.percent, 25);
+  EXPECT_DOUBLE_EQ(progress.elapsed_s, 20);
+  EXPECT_DOUBLE_EQ(progress.held_s, 10);
+  EXPECT_DOUBLE_EQ(*progress.remaining_at_this_pace_s, 30);
+}
+
+}  // namespace
+}  // namespace kerf::job

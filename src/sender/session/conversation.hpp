@@ -1,0 +1,155 @@
+#pragma once
+// For tests: a session that talks to a controller made of a reply table, on a clock that the test moves.
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sender/job/program.hpp"
+#include "sender/session/session.hpp"
+
+namespace kerf::session {
+
+/// Answers whole lines from a table and realtime bytes from a few strings. A line that is not in the table gets `ok`.
+struct ReplyTable {
+  std::map<std::string, std::string, std::less<>> lines;
+  std::string status = "<Idle|MPos:0.000,0.000,0.000|FS:0,0|WCO:0.000,0.000,0.000>\r\n";
+  /// Answer to 0x87; empty: the byte is dropped.
+  std::string full_status;
+  /// Answer to 0x18; empty: no reset.
+  std::string welcome;
+  bool answers_lines = true;
+  bool answers_status = true;
+
+  [[nodiscard]] std::string reply_to_byte(char byte) const {
+    if (byte == '?') return answers_status ? status : "";
+    if (byte == '\x87') return full_status;
+    if (byte == '\x18') return welcome;
+    return {};
+  }
+  [[nodiscard]] std::string reply_to_line(const std::string& line) const {
+    if (!answers_lines) return {};
+    const auto found = lines.find(line);
+    return found == lines.end() ? "ok\r\n" : found->second;
+  }
+};
+
+inline ReplyTable grbl_replies() {
+  ReplyTable table;
+  table.lines = {
+      {"$I", "[VER:1.1h.20190830:mill]\r\n[OPT:V,15,128]\r\nok\r\n"},
+      {"$G", "[GC:G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]\r\nok\r\n"},
+      {"$#",
+       "[G54:1.000,2.000,3.000]\r\n[G92:0.000,0.000,0.000]\r\n[TLO:0.000]\r\n[PRB:0.000,0.000,0.000:0]\r\nok\r\n"},
+      {"$$", "$0=10\r\n$13=0\r\n$110=500.000\r\nok\r\n"}};
+  table.welcome = "\r\nGrbl 1.1h ['$' for help]\r\n";
+  return table;
+}
+
+inline ReplyTable grblhal_replies() {
+  ReplyTable table = grbl_replies();
+  table.lines["$I"] = "error:3\r\n";
+  table.lines["$I+"] =
+      "[VER:1.1f.20260817:]\r\n[OPT:VNML+,100,1024,3,0]\r\n[AXS:3:XYZ]\r\n[NEWOPT:ENUMS,RT+,SED]\r\n"
+      "[FIRMWARE:grblHAL]\r\nok\r\n";
+  table.lines["$EA"] = "[ALARMCODE:1||Hard limit has been triggered. Home again.]\r\nok\r\n";
+  table.lines["$EE"] = "[ERRORCODE:20||Unsupported G-code command found in block]\r\nok\r\n";
+  table.lines["$EG"] = "[SETTINGGROUP:43|42|X-axis]\r\nok\r\n";
+  table.lines["$ES"] = "[SETTING:110|43|X-axis maximum rate|mm/min|6|#####0.000|||0|0]\r\nok\r\n";
+  table.full_status = "<Idle|MPos:0.000,0.000,0.000|Bf:100,1023|FS:0,0|WCO:0.000,0.000,0.000|MPG:0|FW:grblHAL>\r\n";
+  table.welcome = "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n";
+  return table;
+}
+
+inline ReplyTable rabbit_replies() {
+  ReplyTable table = grbl_replies();
+  table.lines["$I"] = "[VER:1.1h.20260315]\r\n[OPT:PHL]\r\nok\r\n";
+  table.lines["$EA"] = "[ALARMCODE:1|Hard limit|A switch was hit.]\r\nok\r\n";
+  table.lines["$EE"] = "[ERRORCODE:20|Unsupported|Not known here.]\r\nok\r\n";
+  table.welcome = "\r\nRabbit GRBL v1.6.0 Build 20260315  \r\n";
+  return table;
+}
+
+/// Both ends. Everything that the session sends is kept in `sent`, realtime bytes and lines in the order in which they
+/// left.
+class Conversation {
+ public:
+  explicit Conversation(ReplyTable table, SessionOptions options = {}) : replies(std::move(table)), session(options) {}
+
+  void open(std::string_view greeting = {}) {
+    session.on_open(now);
+    drain();
+    if (!greeting.empty()) hear(greeting);
+  }
+  void hear(std::string_view bytes) {
+    session.on_bytes(now, bytes);
+    drain();
+  }
+  void submit(const Command& command) {
+    session.submit(now, command);
+    drain();
+  }
+  void pass(Duration time) {
+    const Instant end = now + time;
+    while (session.next_deadline() <= end) {
+      now = std::max(now, session.next_deadline());
+      session.advance_to(now);
+      drain();
+    }
+    now = end;
+  }
+  void connect() {
+    open();
+    pass(std::chrono::seconds{10});
+    sent.clear();
+  }
+  void run(std::string_view text, std::string name = "part.nc") {
+    submit(StartJob{*job::Program::load(std::move(name), std::string{text})});
+  }
+
+  template <class Kind>
+  [[nodiscard]] std::vector<Kind> told() const {
+    std::vector<Kind> found;
+    for (const auto& event : events) {
+      if (const auto* kind = std::get_if<Kind>(&event)) found.push_back(*kind);
+    }
+    return found;
+  }
+  [[nodiscard]] std::size_t count_sent(char byte) const {
+    return static_cast<std::size_t>(std::ranges::count(sent, byte));
+  }
+
+  ReplyTable replies;
+  Session session;
+  Instant now{};
+  std::string sent;
+  std::vector<std::string> lines_sent;
+  std::vector<Event> events;
+
+ private:
+  void drain() {
+    for (auto out = session.take_outbox(); !out.empty(); out = session.take_outbox()) {
+      events.insert(events.end(), out.events.begin(), out.events.end());
+      sent += out.realtime + out.lines;
+      std::string heard;
+      for (const char byte : out.realtime) heard += replies.reply_to_byte(byte);
+      for (const char byte : out.lines) {
+        if (byte != '\n') {
+          line_ += byte;
+          continue;
+        }
+        lines_sent.push_back(line_);
+        heard += replies.reply_to_line(line_);
+        line_.clear();
+      }
+      if (!heard.empty()) session.on_bytes(now, heard);
+    }
+  }
+
+  std::string line_;
+};
+
+}  // namespace kerf::session
