@@ -94,6 +94,13 @@ TEST(DecodeStatus, TheFirstOfTwoCounts) {
   EXPECT_EQ(report.unknown, (std::vector<UnknownField>{{"MPos", "2.000"}}));
 }
 
+TEST(DecodeStatus, DamagedFieldsStayBehindSoundOnesWhenPrinted) {
+  const StatusReport report = status("<Idle|MPos:1.000|FW:grblHAL:0|P:x|FW:grblHAL|P:0|Fan:1>");
+  EXPECT_EQ(report.firmware, "grblHAL:0");
+  EXPECT_EQ(encode(report), "<Idle|MPos:1.000|P:0|Fan:1|FW:grblHAL:0|P:x|FW:grblHAL>");
+  EXPECT_EQ(status(encode(report)).firmware, "grblHAL:0");
+}
+
 TEST(DecodeStatus, EmptyTextsDifferFromAbsentOnes) {
   EXPECT_EQ(status("<Idle|MPos:0.000|A:>").accessories, "");
   EXPECT_EQ(status("<Idle|MPos:0.000>").accessories, std::nullopt);

@@ -75,8 +75,15 @@ void add_auto_report(std::string& out, const std::optional<int>& period_ms) {
   if (*period_ms != 0) out += ':' + std::to_string(*period_ms);
 }
 
-void add_unknown(std::string& out, const StatusReport& report) {
+// A damaged or repeated field has a name that we know. It has to stand behind the sound one, which counts.
+bool has_known_name(const UnknownField& field) {
+  const auto rows = vocabulary::status_field_rows();
+  return std::ranges::find(rows, field.name, &vocabulary::StatusFieldRow::name) != rows.end();
+}
+
+void add_unknown(std::string& out, const StatusReport& report, bool known_names) {
   for (const UnknownField& field : report.unknown) {
+    if (has_known_name(field) != known_names) continue;
     out += '|';
     out += field.name;
     if (!field.value.empty()) out += ':' + field.value;
@@ -120,7 +127,7 @@ void add_field(std::string& out, StatusField field, const StatusReport& report, 
     case StatusField::Probe: return add_probe(out, report.probe);
     case StatusField::ToolLengthReference: return add_flag(out, "TLR", report.tlr);
     case StatusField::InputResult: return add_number(out, "In", report.input_result);
-    case StatusField::PluginFields: return add_unknown(out, report);
+    case StatusField::PluginFields: return add_unknown(out, report, false);
     case StatusField::FirmwareName: return add_text(out, "FW", report.firmware);
     case StatusField::CriticalEvent: return add_flag(out, "$C", report.critical);
   }
@@ -144,6 +151,7 @@ std::string encode_status(const StatusReport& report, const PrintStyle& style) {
       add_field(out, row.field, report, style);
     }
   }
+  add_unknown(out, report, true);
   out += '>';
   return out;
 }
