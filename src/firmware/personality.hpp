@@ -1,18 +1,206 @@
 #pragma once
 // What one firmware does differently from another, as rows and named policies: everything the virtual controller asks
-// about itself.
+// about itself. What both ends of the wire must know stands in vocabulary::Dialect.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <expected>
+#include <initializer_list>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "common/base/time.hpp"
+#include "common/vocabulary/dialect.hpp"
+#include "common/vocabulary/errors.hpp"
 #include "common/vocabulary/firmware.hpp"
+#include "common/vocabulary/machine_state.hpp"
 
 namespace kerf::firmware {
 
+using vocabulary::ErrorCode;
+using vocabulary::MachineState;
+
+/// Set of machine states, for "allowed in" columns.
+class StateSet {
+ public:
+  constexpr StateSet() = default;
+  constexpr StateSet(std::initializer_list<MachineState> states) {
+    for (const MachineState state : states) bits_ |= 1U << static_cast<unsigned>(state);
+  }
+  [[nodiscard]] constexpr bool contains(MachineState state) const {
+    return ((bits_ >> static_cast<unsigned>(state)) & 1U) != 0;
+  }
+  [[nodiscard]] static constexpr StateSet any() {
+    StateSet all;
+    all.bits_ = ~0U;
+    return all;
+  }
+
+ private:
+  unsigned bits_ = 0;
+};
+
+/// What a `$` line asks for.
+enum class Command : std::uint8_t {
+  Help,
+  ListSettings,
+  DescribeSetting,
+  ReadSetting,
+  WriteSetting,
+  ParserState,
+  Parameters,
+  CheckMode,
+  Unlock,
+  Home,
+  Jog,
+  BuildInformation,
+  ExtendedBuildInformation,
+  StoreUserText,
+  ListStartupLines,
+  StoreStartupLine,
+  Restore,
+  Sleep,
+  ListAlarms,
+  ListErrors,
+  ListSettingGroups,
+  ListSettingDefinitions,
+  ListEverything,
+  SettingDescription,
+  BlockDelete,
+  SingleBlock,
+  OptionalStop,
+  SetToolReference,
+  ProbeToolPlate,
+  ReportLimits,
+  ReportHomeSwitches,
+  ReportLastEvents,
+  ReportNothing,
+  ListSpindles,
+  ListSpindlesForMachines,
+  HelpTopics,
+  ListChangedSettings,
+  ListNamedSettings,
+  ListSettingNames,
+  ListCommands,
+};
+
+/// One `$` command of a firmware.
+struct CommandRow {
+  std::string_view name;  ///< in capitals, without `$`
+  Command command{};
+  StateSet states = StateSet::any();  ///< in any other state the answer is error:8
+  /// Given in front of whatever follows `=`: the axis of `$HX`, the number of `$N0`.
+  std::string_view prefix{};
+  bool takes_value = false;      ///< `$I=text`
+  bool needs_value = false;      ///< without `=` it is error:3
+  bool works_critically = true;  ///< grblHAL: also while only a reset helps; otherwise error:79
+};
+
+/// A `$` line, understood.
+struct ParsedCommand {
+  Command command{};
+  StateSet states = StateSet::any();
+  /// Setting id, axis letter or line number, as far as the command has one.
+  std::string key{};
+  /// What follows `=`; empty without it.
+  std::string value{};
+  bool has_value = false;
+
+  friend bool operator==(const ParsedCommand& left, const ParsedCommand& right) {
+    return left.command == right.command && left.key == right.key && left.value == right.value &&
+           left.has_value == right.has_value;
+  }
+};
+
 struct Personality;
+class SettingsStore;
+
+/// Reads a `$` line (without the `$`) as one firmware does; its order of checks decides which error is answered.
+using CommandParser = std::expected<ParsedCommand, ErrorCode> (*)(const Personality&, std::string_view line,
+                                                                 MachineState state, bool critical);
+/// The value that `text` gives to a setting, as one firmware checks it.
+using SettingCheck = std::expected<std::string, ErrorCode> (*)(const SettingsStore&, const vocabulary::SettingMatch&,
+                                                              std::string_view text);
+
+/// What the machine remembers of a homing cycle.
+struct HomingRules {
+  /// Axis masks of the cycles in order, where they are compiled in; zeros are skipped.
+  std::array<std::uint8_t, 6> fixed_cycles{};
+  /// First of the consecutive settings that hold the masks; 0 where they are compiled in.
+  int cycle_setting = 0;
+  int cycle_settings = 0;
+  /// Setting with the number of locate passes; 0 where it is 1.
+  int passes_setting = 0;
+  float search_scalar = 1.5F;  ///< times the longest travel
+  float locate_scalar = 5.0F;  ///< times the pull-off
+  /// Says `<Home...>` and waits 100 ms before it moves, and `[MSG:]` when done.
+  bool announces = false;
+  /// Counts which axes are homed; soft limits then only hold for those.
+  bool tracks_axes = false;
+};
+
+/// What happens when power comes or a reset has cleared everything.
+struct StartRules {
+  bool blank_memory_error = false;           ///< error:7 before the welcome
+  bool blank_memory_lists_settings = false;  ///< then all settings (gnea/grbl settings.c)
+  bool homing_locks = false;                 ///< `$22` on: power-up ends in Alarm (gnea/grbl main.c)
+  bool has_homing_alarm = false;             ///< `$22` bit 2: ALARM:11
+  bool limits_lock = false;                  ///< an active limit input with `$21` on ends in Alarm
+  bool same_alarm_is_silent = false;         ///< an alarm that is in force already is not printed again
+  bool startup_blocks_split = false;         ///< `|` separates blocks in one startup line
+  bool has_reset_actions = false;            ///< `$676`
+};
+
+/// How status reports come about.
+struct StatusRules {
+  bool at_once = false;  ///< Rabbit answers from its receive task, whatever the main loop does
+  bool when_critical = false;
+  bool first_is_overrides = false;  ///< grblHAL: `Ov` is due before `WCO`; Grbl the other way round
+  bool counts_changes = false;      ///< grblHAL: fields come when something changed
+  bool accessories_alone = false;   ///< `A:` also without `Ov:`, and empty when all is off
+};
+
+/// What realtime bytes do.
+struct RealtimeRules {
+  bool same_instant_collapses = false;  ///< Grbl: two of the same override byte between two passes count once
+  bool mist_toggle = false;
+  bool toggles_coolant_in_jog = false;
+  bool resume_says_nothing_said = false;  ///< grblHAL: an empty `[MSG:]` when a hold ends and `$63` bit 1 is set
+  int door_resuming_substate = 3;
+  bool door_again_ignored = false;  ///< 0x84 while in Door already
+};
+
+/// One firmware's ways. The function pointers are named policies; everything else is a value.
+struct Personality {
+  vocabulary::Firmware firmware{};
+
+  StartRules start{};
+  HomingRules homing{};
+  StatusRules status{};
+  RealtimeRules realtime{};
+
+  bool full_buffer_drops_realtime = false;  ///< Rabbit
+  bool reads_lines_in_sleep = false;
+  bool sleep_needs_setting = false;  ///< grblHAL `$62`
+  bool check_mode_is_silent = false;
+  bool restore_resets = true;  ///< `$RST=` ends in a reset
+  bool restores_network = false;
+  bool parameters_pause = false;  ///< Rabbit waits 100 ms before the ok of `$#`
+  bool stored_writes_synchronise = false;
+  bool has_work_offset_sync_bit = false;  ///< `$10` bit 8; otherwise every change of WCO waits for the motion
+  bool soft_limits_in_check = false;
+
+  CommandParser parse_command{};
+  SettingCheck check_setting{};
+  std::span<const CommandRow> commands{};
+  std::string_view help{};
+  /// `$I` rows behind NEWOPT: key and value.
+  std::span<const std::array<std::string_view, 2>> build_rows{};
+
+  [[nodiscard]] const vocabulary::Dialect& dialect() const { return vocabulary::dialect_of(firmware); }
+};
 
 /// The personality of a firmware; Grbl 1.1h for an unknown one.
 [[nodiscard]] const Personality& personality_of(vocabulary::Firmware firmware);

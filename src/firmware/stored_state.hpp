@@ -27,7 +27,7 @@ struct StoredState {
   /// welcome).
   bool initialised = false;
   /// Setting id without `$` ("110", "Homing/Enable") to the value as the firmware prints it.
-  std::map<std::string, std::string, std::less<>> settings;
+  std::map<std::string, std::string, std::less<>> settings{};
   /// "G54" to values in mm, one an axis, in machine coordinates.
   std::map<std::string, std::vector<double>, std::less<>> offsets;
   std::array<std::string, 2> startup_lines;

@@ -68,6 +68,9 @@ class Interpreter {
   void complete_tool_change();
   void abort_tool_change();
 
+  /// A coolant toggle by realtime byte shows in the modal state too.
+  void set_coolant(const Coolant& coolant) { state_.modal.coolant = coolant; }
+
   /// Work offset, G92 and tool length together: machine position minus this is the work position.
   [[nodiscard]] AxisValues work_coordinate_offset() const;
 

@@ -1,0 +1,15 @@
+#pragma once
+// From a block of G-code to steps.
+
+#include <expected>
+#include <string_view>
+
+#include "firmware/board.hpp"
+#include "firmware/step.hpp"
+
+namespace kerf::firmware {
+
+/// Interprets `block` and appends what it asks for; without the answer. A refused block appends nothing.
+std::expected<void, ErrorCode> add_block_steps(Board& board, std::string_view block, Steps& steps);
+
+}  // namespace kerf::firmware

@@ -1,0 +1,275 @@
+#include "firmware/board.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace kerf::firmware {
+
+using gcode::StoredOffset;
+using vocabulary::FeedbackText;
+
+namespace {
+
+constexpr std::array<std::string_view, 12> kOffsetNames = {"G54",   "G55",   "G56",   "G57", "G58", "G59",
+                                                           "G59.1", "G59.2", "G59.3", "G28", "G30", "G92"};
+
+std::size_t index_of(StoredOffset which) {
+  return static_cast<std::size_t>(which);
+}
+
+AxisValues& offset_of(gcode::Offsets& offsets, StoredOffset which) {
+  switch (which) {
+    case StoredOffset::G28: return offsets.g28;
+    case StoredOffset::G30: return offsets.g30;
+    case StoredOffset::G92: return offsets.g92;
+    default: return offsets.work.at(index_of(which));
+  }
+}
+
+/// More than any planner holds (grblHAL $398 goes to 1000).
+constexpr std::size_t kMostBlocks = 1024;
+
+/// Where an axis may go, counted from its homed position.
+struct Travel {
+  float min = 0;
+  float max = 0;
+};
+
+/// gnea/grbl system.c: negative space. Rabbit mirrors axes that home towards minus; grblHAL keeps the pull-off distance
+/// when hard limits are on, and puts zero at the switch with `$22` bit 3 (machine_limits.c).
+Travel travel_of(const Board& board, int axis) {
+  const auto length = static_cast<float>(board.settings.number(setting::kMaxTravel, axis));
+  const bool homes_to_minus = board.settings.flag(setting::kHomingDirection, static_cast<unsigned>(axis));
+  switch (board.personality.firmware) {
+    case vocabulary::Firmware::Rabbit:
+      return homes_to_minus ? Travel{.min = 0, .max = length} : Travel{.min = -length, .max = 0};
+    case vocabulary::Firmware::GrblHal: {
+      const float pull_off = board.settings.flag(setting::kHardLimits)
+                                 ? static_cast<float>(board.settings.number(setting::kHomingPullOff))
+                                 : 0.0F;
+      if (!board.settings.flag(setting::kHoming, homing_bit::kOriginZero)) {
+        return {.min = -length + pull_off, .max = -pull_off};
+      }
+      return homes_to_minus ? Travel{.min = 0, .max = length - pull_off} : Travel{.min = -length + pull_off, .max = 0};
+    }
+    default: return {.min = -length, .max = 0};
+  }
+}
+
+bool is_guarded(const Board& board, int axis) {
+  if (board.settings.number(setting::kMaxTravel, axis) <= 0) return false;
+  return !board.personality.homing.tracks_axes || ((board.homed >> static_cast<unsigned>(axis)) & 1U) != 0;
+}
+
+}  // namespace
+
+std::string_view name_of(StoredOffset which) {
+  return kOffsetNames.at(index_of(which));
+}
+
+Board::Board(const Personality& owner, StoredState memory)
+    : personality(owner),
+      stored(std::move(memory)),
+      settings(owner),
+      rejected_settings(settings.load(stored)),
+      outbox(protocol::style_of(owner.dialect())),
+      interpreter(gcode::rules_for(owner.firmware)),
+      planner(motion::rules_of(owner.firmware), settings.motion()),
+      executor(planner, motion::rules_of(owner.firmware)),
+      block_targets_mm(kMostBlocks) {
+  apply_settings();
+  load_offsets();
+}
+
+void Board::plan(const AxisValues& target_mm, const gcode::Feed& feed) {
+  ++blocks_planned;
+  block_targets_mm.at(blocks_planned % kMostBlocks) = target_mm;
+  planner.plan({.target_mm = target_mm, .feed = feed, .source_line = blocks_planned});
+}
+
+void Board::say(FeedbackText text) {
+  say(protocol::Feedback{.text = std::string{vocabulary::feedback_text(personality.firmware, text)}});
+}
+
+bool Board::raise_alarm(vocabulary::AlarmCode code) {
+  const bool known = state == MachineState::Alarm && alarm == vocabulary::number_of(code);
+  alarm = vocabulary::number_of(code);
+  state = MachineState::Alarm;
+  if (known && personality.start.same_alarm_is_silent) return false;
+  say(protocol::AlarmRaised{.code = alarm});
+  return true;
+}
+
+bool Board::reports(vocabulary::ReportBit bit) const {
+  return vocabulary::has(settings.mask(setting::kReportMask), bit);
+}
+
+AxisValues Board::to_mm(const AxisSteps& steps) const {
+  AxisValues mm{};
+  const AxisValues& steps_per_mm = planner.settings().steps_per_mm;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(settings.axes()); ++axis) {
+    mm.at(axis) = static_cast<float>(steps.at(axis)) / steps_per_mm.at(axis);
+  }
+  return mm;
+}
+
+AxisValues Board::position_mm() const {
+  return to_mm(steps());
+}
+
+AxisMask Board::limits() const {
+  return workcell.limits_at(executor.motor_steps_at(now), geometry());
+}
+
+bool Board::probe_triggered() const {
+  return workcell.probe_at(executor.motor_steps_at(now), geometry());
+}
+
+std::vector<AxisMask> Board::homing_cycles() const {
+  std::vector<AxisMask> cycles;
+  const HomingRules& rules = personality.homing;
+  if (rules.cycle_setting == 0) {
+    std::ranges::copy_if(rules.fixed_cycles, std::back_inserter(cycles), [](auto mask) { return mask != 0; });
+    return cycles;
+  }
+  for (int index = 0; index < rules.cycle_settings; ++index) {
+    const auto mask = static_cast<AxisMask>(settings.mask(rules.cycle_setting + index) & all_axes());
+    if (mask != 0) cycles.push_back(mask);
+  }
+  return cycles;
+}
+
+AxisMask Board::homing_axes() const {
+  AxisMask axes = 0;
+  for (const AxisMask cycle : homing_cycles()) axes = static_cast<AxisMask>(axes | cycle);
+  return axes;
+}
+
+bool Board::is_within_travel(const AxisValues& target_mm) const {
+  for (int axis = 0; axis < settings.axes(); ++axis) {
+    if (!is_guarded(*this, axis)) continue;
+    const Travel travel = travel_of(*this, axis);
+    const float target = target_mm.at(static_cast<std::size_t>(axis));
+    if (target < travel.min || target > travel.max) return false;
+  }
+  return true;
+}
+
+AxisValues Board::clipped_to_travel(const AxisValues& target_mm) const {
+  const AxisValues& from = interpreter.state().position_mm;
+  // The whole vector is shortened, so that the jog keeps its direction (grblHAL clip_3d_target).
+  float part = 1.0F;
+  for (int axis = 0; axis < settings.axes(); ++axis) {
+    const auto at = static_cast<std::size_t>(axis);
+    const float distance = target_mm.at(at) - from.at(at);
+    if (!is_guarded(*this, axis) || distance == 0.0F) continue;
+    const Travel travel = travel_of(*this, axis);
+    const float end = std::clamp(target_mm.at(at), travel.min, travel.max);
+    part = std::min(part, std::max(0.0F, (end - from.at(at)) / distance));
+  }
+  AxisValues clipped = target_mm;
+  if (part >= 1.0F) return clipped;
+  for (std::size_t axis = 0; axis < clipped.size(); ++axis) {
+    clipped.at(axis) = from.at(axis) + (target_mm.at(axis) - from.at(axis)) * part;
+  }
+  return clipped;
+}
+
+float Board::spindle_rpm() const {
+  if (accessories.spindle == gcode::SpindleDirection::Off) return 0;
+  float rpm = accessories.programmed_rpm;
+  if (const auto dynamic = executor.dynamic_rpm()) {
+    rpm = *dynamic;
+  } else if (planner.settings().laser_mode && planner.current() != nullptr) {
+    rpm = planner.current()->feed.spindle_rpm;
+  }
+  if (overrides.spindle_acts) rpm *= static_cast<float>(overrides.spindle) / 100.0F;
+  if (rpm <= 0) return 0;
+  return std::clamp(rpm, static_cast<float>(settings.number(setting::kSpindleMin)),
+                    std::max(static_cast<float>(settings.number(setting::kSpindleMin)),
+                             static_cast<float>(settings.number(setting::kSpindleMax))));
+}
+
+void Board::sync_position() {
+  planner.sync_position(steps());
+  interpreter.sync_position(position_mm());
+}
+
+void Board::flush_motion() {
+  planner.clear();
+  executor.reset(now);
+  motion_messages.clear();
+  sync_position();
+}
+
+void Board::apply_settings() {
+  const motion::MotionSettings motion = settings.motion();
+  const bool rescaled = motion.steps_per_mm != planner.settings().steps_per_mm;
+  planner.set_settings(motion);
+  settings.configure(interpreter.settings());
+  interpreter.settings().block_delete = switches.block_delete;
+  interpreter.settings().optional_stop_disabled = switches.optional_stop_disabled;
+  outbox.set_style(protocol::style_of(personality.dialect(), settings.flag(setting::kReportInches)));
+  geometry_ = {.axes = static_cast<std::size_t>(settings.axes()),
+               .steps_per_mm = motion.steps_per_mm,
+               .travel_mm = settings.axis_values(setting::kMaxTravel),
+               .homing_negative = static_cast<AxisMask>(settings.mask(setting::kHomingDirection))};
+  guards_hard_limits_ = settings.flag(setting::kHardLimits);
+  if (rescaled) sync_position();
+}
+
+void Board::apply_overrides() {
+  planner.set_overrides(overrides.feed_acts ? overrides.feed : 100, overrides.feed_acts ? overrides.rapid : 100);
+}
+
+void Board::set_accessories(const Accessories& wanted) {
+  if (wanted == accessories) return;
+  accessories = wanted;
+  owe_accessories();
+}
+
+void Board::owe_work_offset() {
+  report.work_offset = true;
+  if (!personality.status.counts_changes) report.work_offset_counter = 0;
+}
+
+void Board::owe_overrides() {
+  report.overrides = true;
+  if (!personality.status.counts_changes) report.override_counter = 0;
+}
+
+void Board::owe_accessories() {
+  report.accessories = true;
+  if (!personality.status.counts_changes) report.override_counter = 0;
+}
+
+void Board::store_settings() {
+  settings.save(stored);
+  stored.initialised = true;
+  ++stored_revision;
+}
+
+void Board::store_offset(StoredOffset which) {
+  const AxisValues& values = offset_of(interpreter.offsets(), which);
+  const auto axes = static_cast<std::ptrdiff_t>(settings.axes());
+  stored.offsets.insert_or_assign(std::string{name_of(which)},
+                                  std::vector<double>(values.begin(), values.begin() + axes));
+  ++stored_revision;
+}
+
+void Board::load_offsets() {
+  interpreter.offsets() = gcode::Offsets{};
+  for (std::size_t index = 0; index < kOffsetNames.size(); ++index) {
+    const auto found = stored.offsets.find(kOffsetNames.at(index));
+    if (found == stored.offsets.end()) continue;
+    const auto which = static_cast<StoredOffset>(index);
+    if (which == StoredOffset::G92 && settings.flag(setting::kG92Volatile)) continue;
+    AxisValues& values = offset_of(interpreter.offsets(), which);
+    const std::size_t count = std::min(values.size(), found->second.size());
+    for (std::size_t axis = 0; axis < count; ++axis) values.at(axis) = static_cast<float>(found->second.at(axis));
+  }
+  interpreter.reload_offsets();
+}
+
+}  // namespace kerf::firmware

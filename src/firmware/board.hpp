@@ -1,0 +1,181 @@
+#pragma once
+// What the parts of one controller share, as the firmware's global variables do: settings, parser, motion, state.
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/gcode/interpreter.hpp"
+#include "common/motion/executor.hpp"
+#include "common/motion/planner.hpp"
+#include "common/vocabulary/alarms.hpp"
+#include "common/vocabulary/machine_state.hpp"
+#include "common/vocabulary/messages.hpp"
+#include "firmware/outbox.hpp"
+#include "firmware/personality.hpp"
+#include "firmware/settings_store.hpp"
+#include "firmware/stored_state.hpp"
+#include "firmware/workcell.hpp"
+
+namespace kerf::firmware {
+
+using vocabulary::AxisMask;
+using vocabulary::AxisSteps;
+using vocabulary::AxisValues;
+
+/// Spindle and coolant outputs as they are switched right now.
+struct Accessories {
+  gcode::SpindleDirection spindle = gcode::SpindleDirection::Off;
+  float programmed_rpm = 0;
+  bool flood = false;
+  bool mist = false;
+
+  bool operator==(const Accessories&) const = default;
+};
+
+/// Override percentages, and which of them the program lets act (grblHAL M48 to M53).
+struct OverrideState {
+  int feed = 100;
+  int rapid = 100;
+  int spindle = 100;
+  bool feed_acts = true;
+  bool spindle_acts = true;
+  bool feed_hold_acts = true;
+};
+
+/// Switches that a program run looks at (grblHAL).
+struct Switches {
+  bool block_delete = false;
+  bool optional_stop_disabled = false;
+  bool single_block = false;
+};
+
+/// Fields that the next status report owes, and the counters that bring two of them back (protocol.md 3.4).
+struct ReportDebts {
+  bool everything = false;
+  bool work_offset = false;
+  bool work_coordinate_system = false;
+  bool overrides = false;
+  bool accessories = false;
+  bool scaling = false;
+  bool mpg = false;
+  bool homed = false;
+  bool tool = false;
+  bool tool_reference = false;
+  bool tool_offset = false;
+  bool cycle_start_pressed = false;
+  int override_counter = 0;
+  int work_offset_counter = 0;
+};
+
+enum class DoorPhase : std::uint8_t { Closed, Ajar, Retracting, Resuming };
+
+/// A message that appears when its line's first block begins (grblHAL, T:33).
+struct MotionMessage {
+  std::uint32_t block = 0;
+  std::string text{};
+};
+
+/// One controller's shared memory. The parts (Cycle, Foreground, Reporter, ...) change it; it decides nothing itself.
+struct Board {
+  explicit Board(const Personality& owner, StoredState memory);
+  Board(const Board&) = delete;
+  Board& operator=(const Board&) = delete;
+
+  const Personality& personality;
+  StoredState stored;
+  unsigned stored_revision = 0;
+  SettingsStore settings;
+  std::vector<std::string> rejected_settings;
+  Outbox outbox;
+  gcode::Interpreter interpreter;
+  motion::Planner planner;
+  motion::Executor executor;
+  Workcell workcell;
+
+  /// The last instant that went in.
+  Instant now{};
+  bool cold_start = true;
+
+  MachineState state = MachineState::Idle;
+  bool hold_complete = false;
+  DoorPhase door = DoorPhase::Closed;
+  int alarm = 0;
+  /// Nothing but a reset helps.
+  bool critical = false;
+  bool probing = false;
+  bool soft_limit_stop = false;
+  bool auto_reporting = false;
+  bool tool_acknowledged = false;
+  AxisMask homed = 0;
+  AxisValues home_position_mm{};
+  bool position_lost = false;
+  AxisValues tool_reference_mm{};
+  AxisMask tool_reference_axes = 0;
+
+  Accessories accessories;
+  OverrideState overrides;
+  Switches switches;
+  ReportDebts report;
+  std::deque<MotionMessage> motion_messages;
+  /// Blocks planned so far; a block's number is its motion::PathLine::source_line.
+  std::uint32_t blocks_planned = 0;
+  /// Targets of the blocks that may still be queued, by number.
+  std::vector<AxisValues> block_targets_mm;
+
+  /// Queues one line; the planner must have room.
+  void plan(const AxisValues& target_mm, const gcode::Feed& feed);
+  void say(const protocol::Message& message) { outbox.say(message); }
+  void say(vocabulary::FeedbackText text);
+  /// State Alarm; false if this alarm was in force already and is not printed again.
+  bool raise_alarm(vocabulary::AlarmCode code);
+
+  [[nodiscard]] bool reports(vocabulary::ReportBit bit) const;
+  [[nodiscard]] AxisSteps steps() const { return executor.steps_at(now); }
+  [[nodiscard]] AxisValues position_mm() const;
+  [[nodiscard]] AxisValues to_mm(const AxisSteps& steps) const;
+  [[nodiscard]] const Workcell::Geometry& geometry() const { return geometry_; }
+  [[nodiscard]] bool guards_hard_limits() const { return guards_hard_limits_; }
+  [[nodiscard]] AxisMask limits() const;
+  [[nodiscard]] bool probe_triggered() const;
+  [[nodiscard]] AxisMask all_axes() const { return static_cast<AxisMask>((1U << settings.axes()) - 1U); }
+  /// Axes that some homing cycle homes.
+  [[nodiscard]] AxisMask homing_axes() const;
+  [[nodiscard]] std::vector<AxisMask> homing_cycles() const;
+  /// False if `target` leaves the travel that `$20` guards.
+  [[nodiscard]] bool is_within_travel(const AxisValues& target_mm) const;
+  /// The nearest target within travel (grblHAL `$40`).
+  [[nodiscard]] AxisValues clipped_to_travel(const AxisValues& target_mm) const;
+  /// Spindle speed with override and limits; 0 when off.
+  [[nodiscard]] float spindle_rpm() const;
+
+  /// Parser and planner continue from where the machine stands.
+  void sync_position();
+  /// Drops all motion and stops dead where the machine stands.
+  void flush_motion();
+  /// Motion and interpreter follow the settings.
+  void apply_settings();
+  void apply_overrides();
+  void set_accessories(const Accessories& wanted);
+
+  /// Status fields that a change makes due.
+  void owe_work_offset();
+  void owe_overrides();
+  void owe_accessories();
+
+  /// Writes settings and offsets into `stored`.
+  void store_settings();
+  void store_offset(gcode::StoredOffset which);
+  void load_offsets();
+
+ private:
+  Workcell::Geometry geometry_;
+  bool guards_hard_limits_ = false;
+};
+
+/// "G54" for the first offset, and so on.
+[[nodiscard]] std::string_view name_of(gcode::StoredOffset which);
+
+}  // namespace kerf::firmware

@@ -1,0 +1,147 @@
+// How each firmware reads a `$` line. The order of the checks is the firmware's, because it decides the error number.
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/text.hpp"
+#include "firmware/leading_number.hpp"
+#include "firmware/system_commands.hpp"
+
+namespace kerf::firmware {
+
+using Parsed = std::expected<ParsedCommand, ErrorCode>;
+
+namespace {
+
+constexpr StateSet kIdleOrAlarm = {MachineState::Idle, MachineState::Alarm};
+
+const CommandRow* find_row(const Personality& personality, std::string_view name) {
+  const auto found = std::ranges::find(personality.commands, name, &CommandRow::name);
+  return found == personality.commands.end() ? nullptr : &*found;
+}
+
+/// What stands before the first `=`, and what stands behind it.
+struct NameAndValue {
+  std::string name;
+  std::string value;
+  bool has_value = false;
+};
+
+NameAndValue split_value(std::string_view line) {
+  const auto equals = line.find('=');
+  NameAndValue parts;
+  for (const char letter : line.substr(0, equals)) {
+    if (letter != ' ') parts.name += base::to_upper(letter);
+  }
+  parts.has_value = equals != std::string_view::npos;
+  if (parts.has_value) parts.value = line.substr(equals + 1);
+  return parts;
+}
+
+ParsedCommand command_of(const CommandRow& row, NameAndValue parts) {
+  return {.command = row.command,
+          .states = row.states,
+          .key = std::string{row.prefix},
+          .value = std::move(parts.value),
+          .has_value = parts.has_value};
+}
+
+/// gnea/grbl system.c: `$N1=...` and `$110=...` both begin with a number.
+Parsed numbered_grbl(Command command, std::string_view line) {
+  const auto number = leading_number(line);
+  if (!number) return std::unexpected(ErrorCode::BadNumberFormat);
+  if (!number->rest.starts_with('=')) return std::unexpected(ErrorCode::InvalidStatement);
+  const std::string_view value = number->rest.substr(1);
+  if (command == Command::WriteSetting && !leading_number(value)) return std::unexpected(ErrorCode::BadNumberFormat);
+  return ParsedCommand{.command = command,
+                       .key = std::to_string(static_cast<int>(number->value)),
+                       .value = std::string{value},
+                       .has_value = true};
+}
+
+/// The commands that need Idle or Alarm.
+Parsed parse_quiet_grbl(const Personality& personality, std::string_view line, MachineState state) {
+  switch (line.front()) {
+    case 'H': return ParsedCommand{.command = Command::Home, .key = std::string{line.substr(1)}};
+    case 'N':
+      if (line.size() == 1) return ParsedCommand{.command = Command::ListStartupLines};
+      if (state != MachineState::Idle) return std::unexpected(ErrorCode::IdleError);
+      return numbered_grbl(Command::StoreStartupLine, line.substr(1));
+    case '#':
+    case 'S':
+    case 'I':
+    case 'R': {
+      NameAndValue parts = split_value(line);
+      const CommandRow* row = find_row(personality, parts.has_value ? parts.name + "=" : parts.name);
+      if (row == nullptr) return std::unexpected(ErrorCode::InvalidStatement);
+      return command_of(*row, std::move(parts));
+    }
+    default: return numbered_grbl(Command::WriteSetting, line);
+  }
+}
+
+}  // namespace
+
+Parsed parse_command_grbl(const Personality& personality, std::string_view line, MachineState state,
+                          bool /*critical*/) {
+  if (line.empty()) return ParsedCommand{.command = Command::Help};
+  if (line.front() == 'J') {
+    if (state != MachineState::Idle && state != MachineState::Jog) return std::unexpected(ErrorCode::IdleError);
+    if (!line.substr(1).starts_with('=')) return std::unexpected(ErrorCode::InvalidStatement);
+    return ParsedCommand{.command = Command::Jog, .value = std::string{line.substr(2)}, .has_value = true};
+  }
+  if (std::string_view{"$GCX"}.find(line.front()) != std::string_view::npos) {
+    const CommandRow* row = find_row(personality, line);
+    if (row == nullptr) return std::unexpected(ErrorCode::InvalidStatement);
+    return command_of(*row, {});
+  }
+  if (!kIdleOrAlarm.contains(state)) return std::unexpected(ErrorCode::IdleError);
+  return parse_quiet_grbl(personality, line, state);
+}
+
+Parsed parse_command_rabbit(const Personality& personality, std::string_view line, MachineState state,
+                            bool /*critical*/) {
+  if (base::trim(line).empty()) return ParsedCommand{.command = Command::Help};
+  NameAndValue parts = split_value(line);
+  parts.value = base::trim(parts.value);
+  if (const CommandRow* row = find_row(personality, parts.name)) {
+    if (!row->states.contains(state)) return std::unexpected(ErrorCode::IdleError);
+    if ((row->needs_value && !parts.has_value) || (parts.has_value && !row->takes_value)) {
+      return std::unexpected(ErrorCode::InvalidStatement);
+    }
+    return command_of(*row, std::move(parts));
+  }
+  return ParsedCommand{.command = parts.has_value ? Command::WriteSetting : Command::ReadSetting,
+                       .states = parts.has_value ? kIdleOrAlarm : StateSet::any(),
+                       .key = std::string{base::trim(line.substr(0, line.find('=')))},
+                       .value = std::move(parts.value),
+                       .has_value = parts.has_value};
+}
+
+Parsed parse_command_grblhal(const Personality& personality, std::string_view line, MachineState state, bool critical) {
+  if (line.empty()) return ParsedCommand{.command = Command::Help};
+  NameAndValue parts = split_value(line);
+  if (parts.name.starts_with("HELP")) {
+    return ParsedCommand{.command = Command::HelpTopics, .value = parts.name.substr(4)};
+  }
+  if (const CommandRow* row = find_row(personality, parts.name)) {
+    if (critical && !row->works_critically) return std::unexpected(ErrorCode::NotAllowedInCriticalEvent);
+    if (row->takes_value || !parts.has_value) {
+      if (!row->states.contains(state)) return std::unexpected(ErrorCode::IdleError);
+      if (row->needs_value && !parts.has_value) return std::unexpected(ErrorCode::InvalidStatement);
+      return command_of(*row, std::move(parts));
+    }
+  }
+  constexpr StateSet kSettingStates = {MachineState::Idle, MachineState::Alarm, MachineState::Check};
+  if (!kSettingStates.contains(state)) return std::unexpected(ErrorCode::IdleError);
+  const auto number = leading_number(parts.name);
+  if (!number || number->value < 0 || number->value != std::floor(number->value)) {
+    return std::unexpected(ErrorCode::InvalidStatement);
+  }
+  return ParsedCommand{.command = parts.has_value ? Command::WriteSetting : Command::ReadSetting,
+                       .key = std::to_string(static_cast<int>(number->value)),
+                       .value = std::move(parts.value),
+                       .has_value = parts.has_value};
+}
+
+}  // namespace kerf::firmware

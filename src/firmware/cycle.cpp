@@ -1,0 +1,338 @@
+#include "firmware/cycle.hpp"
+
+#include <algorithm>
+
+#include "common/base/overloaded.hpp"
+
+namespace kerf::firmware {
+
+using motion::ExecutorPhase;
+using vocabulary::FeedbackText;
+
+namespace {
+
+// gnea/grbl config.h SAFETY_DOOR_SPINDLE_DELAY and SAFETY_DOOR_COOLANT_DELAY; grblHAL has settings for them.
+constexpr double kSpindleRestoreDelay_s = 4.0;
+constexpr double kCoolantRestoreDelay_s = 1.0;
+constexpr unsigned kRestoreAfterHoldBit = 1;
+
+bool is_spinning(const Accessories& accessories) {
+  return accessories.spindle != gcode::SpindleDirection::Off;
+}
+
+double delay_s(const Board& board, int setting_id, double fallback) {
+  return board.settings.find(std::to_string(setting_id)) != nullptr ? board.settings.number(setting_id) : fallback;
+}
+
+}  // namespace
+
+void Cycle::auto_start() {
+  if (board_.state != MachineState::Idle || board_.planner.is_empty()) return;
+  run_or_idle();
+}
+
+void Cycle::run_or_idle() {
+  board_.executor.cycle_start(board_.now);
+  const ExecutorPhase phase = board_.executor.phase();
+  moving_ = phase == ExecutorPhase::Running || phase == ExecutorPhase::Decelerating;
+  board_.state = moving_ ? MachineState::Run : MachineState::Idle;
+}
+
+void Cycle::cycle_start() {
+  switch (board_.state) {
+    case MachineState::Idle: auto_start(); break;
+    case MachineState::Hold:
+      if (board_.hold_complete) resume();
+      break;
+    case MachineState::Door:
+      if (board_.door != DoorPhase::Closed) break;
+      board_.door = DoorPhase::Resuming;
+      restoring_ = Restoring::No;
+      restore_next();
+      break;
+    default: break;
+  }
+}
+
+void Cycle::resume() {
+  const bool restores = !board_.personality.realtime.resume_says_nothing_said ||
+                        board_.settings.flag(setting::kHoldActions, kRestoreAfterHoldBit);
+  const bool was_stopped = is_spinning(to_restore_) && !is_spinning(board_.accessories);
+  if (was_stopped && restores) {
+    board_.say(FeedbackText::RestoringSpindle);
+    Accessories wanted = board_.accessories;
+    wanted.spindle = to_restore_.spindle;
+    wanted.programmed_rpm = to_restore_.programmed_rpm;
+    board_.set_accessories(wanted);
+  }
+  if (board_.personality.realtime.resume_says_nothing_said && restores) board_.say(protocol::Feedback{});
+  to_restore_ = {};
+  board_.hold_complete = false;
+  run_or_idle();
+}
+
+void Cycle::toggle_spindle_stop() {
+  if (board_.state != MachineState::Hold || !board_.hold_complete || !is_spinning(to_restore_)) return;
+  Accessories wanted = board_.accessories;
+  if (is_spinning(wanted)) {
+    wanted.spindle = gcode::SpindleDirection::Off;
+  } else {
+    board_.say(FeedbackText::RestoringSpindle);
+    wanted.spindle = to_restore_.spindle;
+  }
+  board_.set_accessories(wanted);
+}
+
+void Cycle::feed_hold() {
+  switch (board_.state) {
+    case MachineState::Idle:
+      if (board_.overrides.feed_hold_acts) pause();
+      break;
+    case MachineState::Run:
+      if (board_.overrides.feed_hold_acts) halt(Halt::Hold);
+      break;
+    case MachineState::Jog:
+      if (board_.personality.dialect().feed_hold_cancels_jog) jog_cancel();
+      break;
+    default: break;
+  }
+}
+
+void Cycle::pause() {
+  board_.state = MachineState::Hold;
+  board_.hold_complete = true;
+  to_restore_ = board_.accessories;
+}
+
+void Cycle::jog_cancel() {
+  if (board_.state == MachineState::Jog) halt(Halt::JogCancel);
+}
+
+void Cycle::cancel_motion() {
+  halt(Halt::MotionCancel);
+}
+
+void Cycle::stop_before_limit() {
+  if (board_.state == MachineState::Run) halt(Halt::SoftLimit);
+}
+
+void Cycle::halt(Halt reason) {
+  if (halt_ == Halt::Stop) return;
+  halt_ = reason;
+  if (reason == Halt::Hold || reason == Halt::SoftLimit) {
+    board_.state = MachineState::Hold;
+    board_.hold_complete = false;
+    to_restore_ = board_.accessories;
+  }
+  if (reason == Halt::Stop) {
+    board_.executor.begin_stop(board_.now);
+  } else {
+    board_.executor.begin_hold(board_.now);
+  }
+  const ExecutorPhase phase = board_.executor.phase();
+  if (phase == ExecutorPhase::Resting || phase == ExecutorPhase::Held) come_to_rest();
+}
+
+void Cycle::come_to_rest() {
+  moving_ = false;
+  switch (std::exchange(halt_, Halt::None)) {
+    case Halt::Hold: board_.hold_complete = true; break;
+    case Halt::SoftLimit: board_.state = MachineState::Idle; break;
+    case Halt::JogCancel:
+      board_.flush_motion();
+      end_motion();
+      break;
+    case Halt::MotionCancel: board_.state = MachineState::Idle; break;
+    case Halt::Stop: finish_stop(); break;
+    case Halt::Door: finish_retract(); break;
+    case Halt::None: break;
+  }
+}
+
+void Cycle::end_motion() {
+  moving_ = false;
+  const bool tool_waits = board_.interpreter.state().tool_change_pending;
+  board_.state = tool_waits || jogging_in_tool_change_ ? MachineState::Tool : MachineState::Idle;
+  jogging_in_tool_change_ = false;
+}
+
+void Cycle::stop() {
+  if (board_.state == MachineState::Home) return;
+  const bool moves = moving_ && board_.executor.phase() == ExecutorPhase::Running;
+  if (moves) {
+    halt(Halt::Stop);
+  } else if (halt_ != Halt::None) {
+    halt_ = Halt::Stop;
+  } else {
+    finish_stop();
+  }
+}
+
+void Cycle::finish_stop() {
+  board_.interpreter.abort_tool_change();
+  board_.interpreter.reset();
+  board_.flush_motion();
+  board_.set_accessories({});
+  board_.overrides.feed_acts = board_.overrides.spindle_acts = board_.overrides.feed_hold_acts = true;
+  board_.apply_overrides();
+  restoring_ = Restoring::No;
+  restored_at_ = kNever;
+  board_.hold_complete = false;
+  jogging_in_tool_change_ = false;
+  using vocabulary::AlarmCode;
+  const auto code = static_cast<AlarmCode>(board_.alarm);
+  const bool stays = board_.state == MachineState::Alarm &&
+                     (code == AlarmCode::HomingRequired || code == AlarmCode::LimitsEngaged || code == AlarmCode::ProbeProtect);
+  if (stays) return;
+  board_.state = MachineState::Idle;
+  board_.alarm = 0;
+  board_.report.accessories = true;
+  board_.say(FeedbackText::Stop);
+}
+
+void Cycle::open_door() {
+  switch (board_.state) {
+    case MachineState::Alarm:
+    case MachineState::Check:
+    case MachineState::Sleep:
+    case MachineState::Home: return;
+    case MachineState::Door:
+      if (board_.personality.realtime.door_again_ignored && board_.door != DoorPhase::Resuming &&
+          !board_.workcell.is_active(Input::Door)) {
+        return;
+      }
+      break;
+    default: break;
+  }
+  board_.say(FeedbackText::CheckDoor);
+  const bool was_door = board_.state == MachineState::Door;
+  if (!was_door) to_restore_ = board_.accessories;
+  restoring_ = Restoring::No;
+  restored_at_ = kNever;
+  board_.state = MachineState::Door;
+  board_.door = DoorPhase::Retracting;
+  if (moving_ && !was_door) {
+    halt(Halt::Door);
+  } else if (halt_ == Halt::None) {
+    finish_retract();
+  } else {
+    halt_ = Halt::Door;
+  }
+}
+
+void Cycle::finish_retract() {
+  board_.set_accessories({});
+  board_.door = board_.workcell.is_active(Input::Door) ? DoorPhase::Ajar : DoorPhase::Closed;
+}
+
+void Cycle::close_door() {
+  if (board_.state == MachineState::Door && board_.door == DoorPhase::Ajar) board_.door = DoorPhase::Closed;
+}
+
+void Cycle::restore_next() {
+  Accessories wanted = board_.accessories;
+  if (restoring_ == Restoring::No && is_spinning(to_restore_)) {
+    restoring_ = Restoring::Spindle;
+    wanted.spindle = to_restore_.spindle;
+    wanted.programmed_rpm = to_restore_.programmed_rpm;
+    board_.set_accessories(wanted);
+    restored_at_ =
+        board_.now + base::from_seconds(delay_s(board_, setting::kDoorSpindleDelay, kSpindleRestoreDelay_s));
+    return;
+  }
+  if (restoring_ != Restoring::Coolant && (to_restore_.flood || to_restore_.mist)) {
+    restoring_ = Restoring::Coolant;
+    wanted.flood = to_restore_.flood;
+    wanted.mist = to_restore_.mist;
+    board_.set_accessories(wanted);
+    restored_at_ =
+        board_.now + base::from_seconds(delay_s(board_, setting::kDoorCoolantDelay, kCoolantRestoreDelay_s));
+    return;
+  }
+  restoring_ = Restoring::No;
+  restored_at_ = kNever;
+  to_restore_ = {};
+  board_.door = DoorPhase::Closed;
+  run_or_idle();
+}
+
+void Cycle::sleep() {
+  board_.flush_motion();
+  board_.set_accessories({});
+  board_.state = MachineState::Sleep;
+  board_.say(FeedbackText::Sleeping);
+}
+
+void Cycle::start_jog() {
+  if (board_.planner.is_empty() || board_.state == MachineState::Jog) return;
+  jogging_in_tool_change_ = board_.state == MachineState::Tool;
+  board_.state = MachineState::Jog;
+  moving_ = true;
+  board_.executor.cycle_start(board_.now);
+}
+
+bool Cycle::kill() {
+  const bool was_moving = moving_ || halt_ != Halt::None || board_.state == MachineState::Home;
+  halt_ = Halt::None;
+  restoring_ = Restoring::No;
+  restored_at_ = kNever;
+  to_restore_ = {};
+  jogging_in_tool_change_ = false;
+  moving_ = false;
+  motion_ended_ = false;
+  contacts_.clear();
+  board_.hold_complete = false;
+  board_.executor.reset(board_.now);
+  return was_moving;
+}
+
+bool Cycle::is_suspended() const {
+  switch (board_.state) {
+    case MachineState::Hold: return !(halt_ == Halt::SoftLimit);
+    case MachineState::Door: return true;
+    case MachineState::Jog: return halt_ == Halt::JogCancel || halt_ == Halt::Stop;
+    case MachineState::Tool: return !board_.tool_acknowledged;
+    case MachineState::Sleep: return !board_.personality.reads_lines_in_sleep;
+    default: return halt_ == Halt::Stop;
+  }
+}
+
+bool Cycle::is_finished() const {
+  return board_.planner.is_empty() && !moving_ && halt_ == Halt::None;
+}
+
+void Cycle::advance() {
+  board_.executor.advance_to(board_.now);
+  for (const motion::ExecutorEvent& event : board_.executor.take_events()) handle(event);
+  if (restored_at_ <= board_.now) restore_next();
+}
+
+void Cycle::handle(const motion::ExecutorEvent& event) {
+  std::visit(base::Overloaded{
+                 [&](const motion::BlockStarted& started) {
+                   auto& messages = board_.motion_messages;
+                   while (!messages.empty() && messages.front().block <= started.source_line) {
+                     board_.say(protocol::Feedback{.text = messages.front().text});
+                     messages.pop_front();
+                   }
+                 },
+                 [](const motion::BlockFinished&) {},
+                 [&](const motion::MotionEnded&) {
+                   motion_ended_ = true;
+                   if (halt_ != Halt::None) {
+                     come_to_rest();
+                   } else if (board_.state == MachineState::Run || board_.state == MachineState::Jog) {
+                     end_motion();
+                   }
+                 },
+                 [&](const motion::HoldComplete&) { come_to_rest(); },
+                 [&](const motion::ThresholdCrossed& contact) { contacts_.push_back(contact); },
+             },
+             event);
+}
+
+Instant Cycle::next_deadline() const {
+  return std::min(board_.executor.next_deadline(), restored_at_);
+}
+
+}  // namespace kerf::firmware

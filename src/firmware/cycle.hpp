@@ -1,0 +1,84 @@
+#pragma once
+// The machine's state while it moves: cycle start, hold, resume, jog, cancel, stop, safety door, sleep.
+
+#include <cstdint>
+#include <vector>
+
+#include "firmware/board.hpp"
+
+namespace kerf::firmware {
+
+/// Owns the changes of `Board::state` that motion brings. Requests that the state does not allow are ignored, as the
+/// firmwares do (protocol.md 2, 6.6, 6.8, 9.7).
+class Cycle {
+ public:
+  explicit Cycle(Board& board) : board_(board) {}
+
+  /// Runs queued motion if the machine is idle.
+  void auto_start();
+  /// `~`: starts queued motion, ends a finished hold, resumes from a closed door.
+  void cycle_start();
+  /// `!`
+  void feed_hold();
+  /// Program pause: a hold with nothing moving.
+  void pause();
+  /// Stops a jog and drops what is left of it.
+  void jog_cancel();
+  /// The probe has touched: decelerate; motion_cancelled() when the machine rests.
+  void cancel_motion();
+  /// 0x19: decelerate, then forget everything; no alarm.
+  void stop();
+  /// The safety door opens (or 0x84 says so).
+  void open_door();
+  void close_door();
+  void sleep();
+  /// 0x9E: stops the spindle in a finished hold, or starts it again.
+  void toggle_spindle_stop();
+  /// A soft limit is ahead: decelerate and become idle.
+  void stop_before_limit();
+  void start_jog();
+  /// Reset: stops dead. True if something was moving, so that the position is lost.
+  bool kill();
+
+  /// Lines wait, and so do the steps of the line being executed.
+  [[nodiscard]] bool is_suspended() const;
+  [[nodiscard]] bool is_decelerating() const { return halt_ != Halt::None; }
+  /// 0x19 is still decelerating.
+  [[nodiscard]] bool is_stopping() const { return halt_ == Halt::Stop; }
+  /// Motion has come to rest and nothing is queued.
+  [[nodiscard]] bool is_finished() const;
+
+  /// Lets motion and delays go on to `board.now`; contacts and ends are kept for take_contacts() and system_motion_ended().
+  void advance();
+  [[nodiscard]] Instant next_deadline() const;
+  [[nodiscard]] std::vector<motion::ThresholdCrossed> take_contacts() { return std::exchange(contacts_, {}); }
+  /// True once after each motion that ended without being halted.
+  [[nodiscard]] bool take_motion_ended() { return std::exchange(motion_ended_, false); }
+
+ private:
+  /// Why the machine is decelerating.
+  enum class Halt : std::uint8_t { None, Hold, JogCancel, MotionCancel, Stop, Door, SoftLimit };
+  enum class Restoring : std::uint8_t { No, Spindle, Coolant };
+
+  void handle(const motion::ExecutorEvent& event);
+  void halt(Halt reason);
+  void come_to_rest();
+  void end_motion();
+  void resume();
+  void run_or_idle();
+  void finish_stop();
+  void finish_retract();
+  void restore_next();
+
+  Board& board_;
+  Halt halt_ = Halt::None;
+  Restoring restoring_ = Restoring::No;
+  Instant restored_at_ = kNever;
+  Accessories to_restore_;
+  bool jogging_in_tool_change_ = false;
+  bool motion_ended_ = false;
+  bool moving_ = false;
+  std::vector<motion::ThresholdCrossed> contacts_;
+};
+
+}  // namespace kerf::firmware

@@ -1,0 +1,273 @@
+#include "firmware/foreground.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "firmware/block_steps.hpp"
+#include "firmware/listing.hpp"
+
+namespace kerf::firmware {
+
+using vocabulary::AlarmCode;
+using vocabulary::FeedbackText;
+
+void Foreground::power_on() {
+  const StartRules& rules = board_.personality.start;
+  if (!board_.stored.initialised) {
+    if (rules.blank_memory_error) {
+      board_.say(protocol::ErrorAnswer{.code = vocabulary::number_of(ErrorCode::SettingReadFail)});
+    }
+    board_.store_settings();
+    if (rules.blank_memory_lists_settings) Listing{board_}.settings();
+  }
+  board_.cold_start = true;
+  if (rules.homing_locks && board_.settings.flag(setting::kHoming)) board_.state = MachineState::Alarm;
+  auto_report_interval_ =
+      std::chrono::milliseconds{static_cast<std::int64_t>(board_.settings.number(setting::kAutoReport))};
+  steps_.emplace_back(Restart{});
+  run();
+}
+
+void Foreground::run() {
+  for (;;) {
+    waiting_for_ = WaitingFor::Nothing;
+    if (!steps_.empty()) {
+      if (!advance_front()) break;
+    } else if (!read_line()) {
+      break;
+    }
+  }
+  if (board_.now >= next_auto_report_) {
+    next_auto_report_ = board_.now + auto_report_interval_;
+    if (board_.auto_reporting) status_wanted_ = true;
+  }
+  say_wanted_status();
+}
+
+void Foreground::settle() {
+  run();
+  if (steps_.empty()) {
+    cycle_.auto_start();
+    run();
+  }
+}
+
+bool Foreground::advance_front() {
+  Step step = std::move(steps_.front());
+  steps_.pop_front();
+  if (std::visit(*this, step)) return true;
+  steps_.push_front(std::move(step));
+  return false;
+}
+
+bool Foreground::wait_for(WaitingFor what) {
+  waiting_for_ = what;
+  return false;
+}
+
+void Foreground::insert_front(Steps steps) {
+  steps_.insert(steps_.begin(), std::make_move_iterator(steps.begin()), std::make_move_iterator(steps.end()));
+}
+
+bool Foreground::reads_lines() const {
+  if (board_.state == MachineState::Home || cycle_.is_suspended()) return false;
+  return !board_.critical || board_.personality.dialect().critical_alarm_answers_lines;
+}
+
+bool Foreground::read_line() {
+  while (reads_lines() && !receiver_.empty()) {
+    const char byte = receiver_.pop();
+    if (byte == Receiver::kCancelMark) {
+      reader_.clear();
+      last_error_ = ErrorCode::Ok;
+      cycle_.jog_cancel();
+      continue;
+    }
+    if (const auto line = reader_.push(byte)) {
+      begin_line(*line);
+      return true;
+    }
+  }
+  return false;
+}
+
+bool Foreground::locks_gcode() const {
+  switch (board_.state) {
+    case MachineState::Alarm:
+    case MachineState::Jog:
+    case MachineState::Sleep: return true;
+    default: return board_.critical;
+  }
+}
+
+void Foreground::begin_line(const gcode::ReadLine& line) {
+  in_line_ = true;
+  if (line.overlong) {
+    steps_.emplace_back(Answer{.code = ErrorCode::LineTooLong});
+  } else if (line.text.empty()) {
+    steps_.emplace_back(Answer{});
+  } else if (line.text.front() == '$') {
+    const auto result = commands_.execute(line.text.substr(1), steps_);
+    if (result) return;
+    if (result.error() == ErrorCode::LimitsEngaged) {
+      steps_.insert(steps_.end(), {RaiseAlarm{.code = AlarmCode::LimitsEngaged},
+                                   Say{.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(
+                                                                         board_.personality.firmware,
+                                                                         FeedbackText::CheckLimits)}}}});
+    }
+    steps_.emplace_back(Answer{.code = result.error()});
+  } else if (locks_gcode()) {
+    const bool is_demarcation =
+        line.text == "%" && board_.personality.dialect().percent_rule == vocabulary::PercentRule::ProgramToggle;
+    steps_.emplace_back(Answer{.code = is_demarcation ? ErrorCode::Ok : ErrorCode::SystemLocked});
+  } else {
+    execute_block(line.text);
+  }
+}
+
+void Foreground::execute_block(std::string_view text) {
+  const bool latched = board_.personality.dialect().error_latch && last_error_ != ErrorCode::Ok &&
+                       last_error_ != ErrorCode::ToolChangePending;
+  if (latched) {
+    steps_.emplace_back(Answer{.code = last_error_});
+    return;
+  }
+  const auto result = add_block_steps(board_, text, steps_);
+  if (!result) reader_.block_failed();
+  steps_.emplace_back(Answer{.code = result ? ErrorCode::Ok : result.error()});
+}
+
+void Foreground::reset() {
+  const auto restarts = [](const Step& step) { return std::holds_alternative<Restart>(step); };
+  if (std::ranges::any_of(steps_, restarts)) return;
+  const bool homes = board_.state == MachineState::Home;
+  const bool moved = cycle_.kill();
+  homing_.abandon();
+  board_.set_accessories({});
+  board_.position_lost = board_.position_lost || moved;
+  steps_.clear();
+  until_.reset();
+  is_frozen_ = false;
+  status_wanted_ = false;
+  receiver_.forget_aside();
+  receiver_.clear();
+  if (moved) steps_.emplace_back(RaiseAlarm{.code = homes ? AlarmCode::HomingFailReset : AlarmCode::AbortCycle});
+  if (in_line_ && board_.personality.dialect().failed_line_answers_across_reset) steps_.emplace_back(Answer{});
+  steps_.emplace_back(Restart{});
+}
+
+void Foreground::fail(AlarmCode code) {
+  cycle_.kill();
+  homing_.abandon();
+  board_.set_accessories({});
+  board_.position_lost = true;
+  steps_.clear();
+  steps_.emplace_back(RaiseAlarm{.code = code});
+  if (in_line_ && board_.personality.dialect().failed_line_answers_across_reset) steps_.emplace_back(Answer{});
+  steps_.emplace_back(Restart{});
+}
+
+void Foreground::enter_critical_alarm(AlarmCode code) {
+  cycle_.kill();
+  homing_.abandon();
+  board_.set_accessories({});
+  steps_.clear();
+  until_.reset();
+  const auto text = code == AlarmCode::EmergencyStop && board_.personality.start.has_homing_alarm
+                        ? FeedbackText::EmergencyStop
+                        : FeedbackText::ResetToContinue;
+  steps_.insert(steps_.end(),
+                {RaiseAlarm{.code = code},
+                 Say{.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(
+                                                       board_.personality.firmware, text)}}},
+                 EnterCritical{}});
+}
+
+void Foreground::abandon_line() {
+  steps_.clear();
+  until_.reset();
+  is_frozen_ = false;
+  in_line_ = false;
+  homing_.abandon();
+  board_.probing = false;
+  receiver_.forget_aside();
+  receiver_.cancel();
+}
+
+void Foreground::open_door() {
+  if (board_.state == MachineState::Home) {
+    fail(AlarmCode::HomingFailDoor);
+  } else {
+    cycle_.open_door();
+  }
+}
+
+void Foreground::emergency_stop() {
+  // Only grblHAL has the input (alarms.h).
+  if (!board_.personality.start.has_homing_alarm) return;
+  board_.position_lost = board_.position_lost || !cycle_.is_finished();
+  enter_critical_alarm(AlarmCode::EmergencyStop);
+}
+
+void Foreground::acknowledge_tool_change() {
+  if (board_.state != MachineState::Tool || board_.tool_acknowledged) return;
+  board_.tool_acknowledged = true;
+  receiver_.set_aside();
+}
+
+void Foreground::end_tool_change() {
+  if (board_.state != MachineState::Tool) return;
+  board_.interpreter.complete_tool_change();
+  board_.tool_acknowledged = false;
+  receiver_.restore();
+  board_.state = MachineState::Idle;
+  cycle_.auto_start();
+  board_.report.tool = true;
+  reporter_.say_status(receiver_.free());
+}
+
+void Foreground::request_status(bool everything) {
+  status_wanted_ = true;
+  if (everything) board_.report.everything = true;
+  say_wanted_status();
+}
+
+bool Foreground::answers_status() const {
+  const StatusRules& rules = board_.personality.status;
+  if (rules.at_once) return true;
+  if (is_frozen_ || (board_.critical && !rules.when_critical)) return false;
+  if (board_.state != MachineState::Home) return true;
+  return board_.personality.homing.tracks_axes && board_.reports(vocabulary::ReportBit::ReportWhenHoming);
+}
+
+void Foreground::say_wanted_status() {
+  if (!status_wanted_ || !answers_status()) return;
+  status_wanted_ = false;
+  reporter_.say_status(receiver_.free());
+}
+
+void Foreground::look_at_switches() {
+  homing_.look_at_switches();
+  if (!board_.guards_hard_limits()) return;
+  const AxisMask limits = board_.limits();
+  const auto fresh = static_cast<AxisMask>(limits & ~last_limits_);
+  last_limits_ = limits;
+  const bool ignores = board_.state == MachineState::Alarm || board_.state == MachineState::Home;
+  if (fresh == 0 || ignores) return;
+  board_.position_lost = true;
+  board_.homed = 0;
+  enter_critical_alarm(AlarmCode::HardLimit);
+}
+
+bool Foreground::keeps_realtime_characters() const {
+  if (board_.settings.find(std::to_string(setting::kLegacyRealtime)) == nullptr) return false;
+  return reader_.keeps_realtime_characters() && !board_.settings.flag(setting::kLegacyRealtime);
+}
+
+Instant Foreground::next_deadline() const {
+  Instant deadline = std::min(homing_.next_deadline(), next_auto_report_);
+  if (until_) deadline = std::min(deadline, *until_);
+  return deadline;
+}
+
+}  // namespace kerf::firmware

@@ -1,0 +1,128 @@
+#pragma once
+// The firmware's main loop as data: reads lines, turns each into steps, and carries the steps out as far as it can.
+
+#include <cstdint>
+#include <optional>
+
+#include "common/gcode/line_reader.hpp"
+#include "firmware/board.hpp"
+#include "firmware/cycle.hpp"
+#include "firmware/homing.hpp"
+#include "firmware/receiver.hpp"
+#include "firmware/reporter.hpp"
+#include "firmware/step.hpp"
+#include "firmware/system_commands.hpp"
+
+namespace kerf::firmware {
+
+/// One line is in execution at most; its steps stand in a queue whose front is what the firmware would be blocked in.
+class Foreground {
+ public:
+  Foreground(Board& board, Cycle& cycle, Receiver& receiver, Reporter& reporter)
+      : board_(board),
+        cycle_(cycle),
+        receiver_(receiver),
+        reporter_(reporter),
+        homing_(board, cycle),
+        commands_(board, reporter),
+        reader_(board.interpreter.rules().line) {}
+
+  void power_on();
+  /// Goes on as far as possible at `board.now`, without starting queued motion by itself.
+  void run();
+  /// Starts queued motion if the main loop is idle: it has read everything there is.
+  void settle();
+  /// 0x18, the reset button: everything is dropped, and an alarm says so if something moved.
+  void reset();
+  /// 0x19: the line in execution is dropped unanswered.
+  void abandon_line();
+  /// `~` while the machine waits for a tool.
+  void end_tool_change();
+  /// 0xA3: lines are read again while the machine waits for a tool; what was unread waits.
+  void acknowledge_tool_change();
+  /// The safety door opens, or 0x84 says so.
+  void open_door();
+  void emergency_stop();
+  /// A status report is wanted as soon as the main loop looks.
+  void request_status(bool everything);
+  /// Switches may have changed, by hand or by motion.
+  void look_at_switches();
+
+  [[nodiscard]] bool keeps_realtime_characters() const;
+  [[nodiscard]] WaitingFor waiting_for() const { return waiting_for_; }
+  [[nodiscard]] Instant next_deadline() const;
+
+  // One step each: true when it is done.
+  bool operator()(Answer& step);
+  bool operator()(Say& step);
+  bool operator()(SayStatus& step);
+  bool operator()(SayProbe& step);
+  bool operator()(PlanMove& step);
+  bool operator()(PlanArc& step);
+  bool operator()(PlanJog& step);
+  bool operator()(Synchronize& step);
+  bool operator()(Dwell& step);
+  bool operator()(Freeze& step);
+  bool operator()(Perform& step);
+  bool operator()(HoldForCycleStart& step);
+  bool operator()(Probe& step);
+  bool operator()(HomeAxes& step);
+  bool operator()(RaiseAlarm& step);
+  bool operator()(StopAtSoftLimit& step);
+  bool operator()(EnterCritical& step);
+  bool operator()(Restart& step);
+  bool operator()(CheckAtStart& step);
+  bool operator()(RunStartupLines& step);
+  bool operator()(RunStartupBlock& step);
+  bool operator()(EnterSleep& step);
+  bool operator()(EnterToolChange& step);
+  bool operator()(FinishHoming& step);
+
+ private:
+  bool advance_front();
+  bool read_line();
+  void begin_line(const gcode::ReadLine& line);
+  void execute_block(std::string_view text);
+  [[nodiscard]] bool reads_lines() const;
+  [[nodiscard]] bool locks_gcode() const;
+  bool wait_for(WaitingFor what);
+  void insert_front(Steps steps);
+  /// True if the target is fine; otherwise the soft limit alarm is under way.
+  bool check_travel(const AxisValues& target_mm);
+  bool has_planner_room();
+  void fail(vocabulary::AlarmCode code);
+  void enter_critical_alarm(vocabulary::AlarmCode code);
+  bool begin_probe(Probe& step);
+  bool finish_probe(const AxisSteps& contact, bool touched, const gcode::ProbeMove& move);
+  void check_at_start_grblhal();
+  void check_at_start_grbl();
+  [[nodiscard]] bool answers_status() const;
+  void say_wanted_status();
+  void owe_first_report();
+  void note_work_offset();
+  void restore_overrides();
+
+  Board& board_;
+  Cycle& cycle_;
+  Receiver& receiver_;
+  Reporter& reporter_;
+  Homing homing_;
+  SystemCommands commands_;
+  gcode::LineReader reader_;
+
+  Steps steps_;
+  WaitingFor waiting_for_ = WaitingFor::Nothing;
+  std::optional<Instant> until_;
+  bool in_line_ = false;
+  bool is_frozen_ = false;
+  ErrorCode last_error_ = ErrorCode::Ok;
+  bool status_wanted_ = false;
+  AxisMask last_limits_ = 0;
+  AxisSteps contact_{};
+  std::uint8_t last_work_offset_ = 0;
+  AxisValues last_tool_length_{};
+  Duration auto_report_interval_{};
+  Instant next_auto_report_ = kNever;
+};
+
+}  // namespace kerf::firmware

@@ -1,0 +1,340 @@
+// What each step of the foreground does.
+
+#include <algorithm>
+#include <variant>
+
+#include "common/base/overloaded.hpp"
+#include "common/base/text.hpp"
+#include "firmware/block_steps.hpp"
+#include "firmware/foreground.hpp"
+
+namespace kerf::firmware {
+
+using vocabulary::AlarmCode;
+using vocabulary::FeedbackText;
+
+bool Foreground::operator()(Answer& step) {
+  last_error_ = step.code;
+  in_line_ = false;
+  if (step.code == ErrorCode::Ok) {
+    board_.say(protocol::Ok{});
+  } else {
+    board_.say(protocol::ErrorAnswer{.code = vocabulary::number_of(step.code)});
+  }
+  return true;
+}
+
+bool Foreground::operator()(Say& step) {
+  board_.say(step.message);
+  return true;
+}
+
+bool Foreground::operator()(SayStatus& /*step*/) {
+  reporter_.say_status(receiver_.free());
+  return true;
+}
+
+bool Foreground::operator()(SayProbe& /*step*/) {
+  reporter_.say_probe();
+  return true;
+}
+
+bool Foreground::check_travel(const AxisValues& target_mm) {
+  if (!board_.settings.flag(setting::kSoftLimits) || board_.is_within_travel(target_mm)) return true;
+  if (board_.state == MachineState::Check && !board_.personality.soft_limits_in_check) return true;
+  steps_.clear();
+  steps_.emplace_back(StopAtSoftLimit{});
+  return false;
+}
+
+bool Foreground::has_planner_room() {
+  if (!board_.planner.is_full()) return true;
+  cycle_.auto_start();
+  return !board_.planner.is_full();
+}
+
+bool Foreground::operator()(PlanMove& step) {
+  if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
+  if (!check_travel(step.move.target_mm)) return true;
+  if (board_.state == MachineState::Check) return true;
+  if (!has_planner_room()) return wait_for(WaitingFor::PlannerRoom);
+  board_.plan(step.move.target_mm, step.move.feed);
+  return true;
+}
+
+bool Foreground::operator()(PlanArc& step) {
+  const gcode::ArcMove& move = step.move;
+  if (!step.chords) {
+    if (!check_travel(move.target_mm)) return true;
+    if (board_.state == MachineState::Check) return true;
+    const gcode::PlaneAxes axes = gcode::axes_of(move.plane);
+    const motion::Arc arc = {.start_mm = step.start_mm,
+                             .target_mm = move.target_mm,
+                             .center_offset_mm = move.center_offset_mm,
+                             .radius_mm = move.radius_mm,
+                             .plane_axes = {static_cast<std::uint8_t>(axes.first),
+                                            static_cast<std::uint8_t>(axes.second),
+                                            static_cast<std::uint8_t>(axes.linear)},
+                             .clockwise = move.clockwise,
+                             .turns = move.turns};
+    step.chords.emplace(arc, board_.planner.rules(), board_.planner.settings());
+  }
+  gcode::Feed feed = move.feed;
+  if (feed.inverse_time && step.chords->inverse_time_factor() > 1) {
+    feed.inverse_time = false;
+    feed.rate_mm_per_min *= static_cast<float>(step.chords->inverse_time_factor());
+  }
+  for (;;) {
+    if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
+    if (!has_planner_room()) return wait_for(WaitingFor::PlannerRoom);
+    const auto chord = step.chords->next();
+    if (!chord || !check_travel(*chord)) return true;
+    board_.plan(*chord, feed);
+  }
+}
+
+bool Foreground::operator()(PlanJog& step) {
+  if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
+  if (board_.planner.is_full()) return wait_for(WaitingFor::PlannerRoom);
+  board_.plan(step.move.target_mm, step.move.feed);
+  board_.interpreter.sync_position(step.move.target_mm);
+  cycle_.start_jog();
+  return true;
+}
+
+bool Foreground::operator()(Synchronize& /*step*/) {
+  if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
+  if (board_.state != MachineState::Check) cycle_.auto_start();
+  return cycle_.is_finished() || wait_for(WaitingFor::MotionToFinish);
+}
+
+bool Foreground::operator()(Dwell& step) {
+  if (board_.state == MachineState::Check) return true;
+  if (cycle_.is_suspended()) {
+    // The delay loop stands still in a hold (T:27).
+    if (until_) step.left = *until_ - board_.now;
+    until_.reset();
+    return wait_for(WaitingFor::CycleStart);
+  }
+  if (!until_) until_ = board_.now + step.left;
+  if (board_.now < *until_) return wait_for(WaitingFor::Time);
+  until_.reset();
+  return true;
+}
+
+bool Foreground::operator()(Freeze& step) {
+  if (!step.until) step.until = until_ = board_.now + step.duration;
+  is_frozen_ = board_.now < *step.until;
+  if (is_frozen_) return wait_for(WaitingFor::Time);
+  until_.reset();
+  return true;
+}
+
+bool Foreground::operator()(Perform& step) {
+  const bool checks_only = board_.state == MachineState::Check;
+  Accessories wanted = board_.accessories;
+  std::visit(base::Overloaded{
+                 [&](const gcode::SpindleChange& change) {
+                   wanted.spindle = change.direction;
+                   wanted.programmed_rpm = change.rpm;
+                 },
+                 [&](const gcode::SpindleSpeedChange& change) { wanted.programmed_rpm = change.rpm; },
+                 [&](const gcode::CoolantChange& change) {
+                   wanted.flood = change.flood;
+                   wanted.mist = change.mist;
+                 },
+                 [&](const gcode::WorkOffsetChange&) { note_work_offset(); },
+                 [&](const gcode::StoredOffsetWrite& write) { board_.store_offset(write.which); },
+                 [&](const gcode::ToolSelect&) { board_.report.tool = true; },
+                 [&](const gcode::OverrideControl& control) {
+                   board_.overrides.feed_acts = control.feed_enabled;
+                   board_.overrides.spindle_acts = control.spindle_enabled;
+                   board_.overrides.feed_hold_acts = control.feed_hold_enabled;
+                   board_.apply_overrides();
+                 },
+                 [&](const gcode::ProgramEnd& end) {
+                   wanted = {};
+                   if (!checks_only) {
+                     note_work_offset();
+                     board_.owe_accessories();
+                     if (end.restores_overrides) restore_overrides();
+                   }
+                   board_.say(FeedbackText::ProgramEnd);
+                 },
+                 [](const auto&) {},
+             },
+             step.action);
+  if (!checks_only) board_.set_accessories(wanted);
+  return true;
+}
+
+void Foreground::note_work_offset() {
+  board_.owe_work_offset();
+  if (const std::uint8_t selected = board_.interpreter.state().modal.work_offset; selected != last_work_offset_) {
+    last_work_offset_ = selected;
+    board_.report.work_coordinate_system = true;
+  }
+  const AxisValues& length = board_.interpreter.offsets().tool_length;
+  if (length != last_tool_length_) board_.report.tool_offset = true;
+  last_tool_length_ = length;
+}
+
+void Foreground::restore_overrides() {
+  board_.overrides = {};
+  board_.apply_overrides();
+  board_.owe_overrides();
+}
+
+bool Foreground::operator()(HoldForCycleStart& step) {
+  if (board_.state == MachineState::Check) return true;
+  if (!step.begun) {
+    step.begun = true;
+    cycle_.pause();
+  }
+  return board_.state != MachineState::Hold || wait_for(WaitingFor::CycleStart);
+}
+
+bool Foreground::begin_probe(Probe& step) {
+  if (board_.state == MachineState::Check) return true;
+  gcode::Offsets& offsets = board_.interpreter.offsets();
+  offsets.probe_succeeded = false;
+  const bool triggered = board_.probe_triggered() != step.move.away;
+  if (triggered || board_.workcell.is_active(Input::ProbeDisconnected)) {
+    board_.interpreter.sync_position(step.move.start_mm);
+    insert_front({RaiseAlarm{.code = AlarmCode::ProbeFailInitial}});
+    return true;
+  }
+  if (!check_travel(step.move.target_mm)) return true;
+  board_.plan(step.move.target_mm, step.move.feed);
+  static_cast<void>(cycle_.take_contacts());
+  if (const auto surface = board_.workcell.surface_step(board_.geometry())) {
+    board_.executor.watch({.axis = vocabulary::Axis::Z,
+                           .steps = step.move.away ? *surface + 1 : *surface,
+                           .above = step.move.away,
+                           .seen_by_step_interrupt = true});
+  }
+  board_.probing = true;
+  step.phase = Probe::Phase::Moving;
+  cycle_.auto_start();
+  return false;
+}
+
+bool Foreground::operator()(Probe& step) {
+  if (step.phase == Probe::Phase::Check) {
+    if (begin_probe(step)) return true;
+  }
+  if (step.phase == Probe::Phase::Moving) {
+    const auto contacts = cycle_.take_contacts();
+    const bool touched = !contacts.empty() || board_.probe_triggered() != step.move.away;
+    if (touched) {
+      contact_ = contacts.empty() ? board_.steps() : contacts.front().steps;
+      step.phase = Probe::Phase::Cancelling;
+      cycle_.cancel_motion();
+    } else if (cycle_.is_finished() && board_.state == MachineState::Idle) {
+      return finish_probe(board_.steps(), false, step.move);
+    }
+  }
+  if (step.phase == Probe::Phase::Cancelling && !cycle_.is_decelerating()) {
+    return finish_probe(contact_, true, step.move);
+  }
+  return wait_for(WaitingFor::Contact);
+}
+
+bool Foreground::finish_probe(const AxisSteps& contact, bool touched, const gcode::ProbeMove& move) {
+  board_.probing = false;
+  board_.executor.clear_watches();
+  board_.flush_motion();
+  gcode::Offsets& offsets = board_.interpreter.offsets();
+  offsets.probe = board_.to_mm(contact);
+  offsets.probe_succeeded = touched;
+  const bool tells = !board_.personality.status.counts_changes || board_.reports(vocabulary::ReportBit::ProbeCoordinates);
+  Steps next;
+  if (!touched && !move.no_error) next.emplace_back(RaiseAlarm{.code = AlarmCode::ProbeFailContact});
+  if (tells) next.emplace_back(SayProbe{});
+  insert_front(std::move(next));
+  return true;
+}
+
+bool Foreground::operator()(HomeAxes& step) {
+  while (!step.cycles.empty()) {
+    if (!step.begun) homing_.begin(step.cycles.front());
+    step.begun = true;
+    switch (homing_.advance()) {
+      case Homing::Outcome::Moving: return wait_for(WaitingFor::Contact);
+      case Homing::Outcome::SwitchNotFound: fail(AlarmCode::HomingFailApproach); return true;
+      case Homing::Outcome::SwitchStuck: fail(AlarmCode::HomingFailPulloff); return true;
+      case Homing::Outcome::Done: break;
+    }
+    step.cycles.pop_front();
+    step.begun = false;
+  }
+  return true;
+}
+
+bool Foreground::operator()(FinishHoming& step) {
+  board_.sync_position();
+  if (status_wanted_) reporter_.say_status(receiver_.free());
+  status_wanted_ = false;
+  board_.state = MachineState::Idle;
+  board_.position_lost = false;
+  board_.report.homed = true;
+  const HomingRules& rules = board_.personality.homing;
+  const AxisMask wanted = board_.homing_axes();
+  const bool all_homed = (wanted & board_.homed) == wanted;
+  if (rules.tracks_axes && (step.asked == 0 || step.asked == vocabulary::mask_of(vocabulary::Axis::Z)) &&
+      board_.tool_reference_axes != 0) {
+    board_.tool_reference_axes = 0;
+    board_.report.tool_reference = true;
+  }
+  if (rules.announces) board_.say(protocol::Feedback{});
+  if (rules.tracks_axes ? all_homed : step.asked == 0) {
+    insert_front({RunStartupLines{}});
+  } else if (homing_is_required(board_)) {
+    board_.alarm = vocabulary::number_of(AlarmCode::HomingRequired);
+    board_.state = MachineState::Alarm;
+  }
+  return true;
+}
+
+bool Foreground::operator()(RaiseAlarm& step) {
+  const bool is_news = board_.raise_alarm(step.code);
+  if (is_news) insert_front({Freeze{.duration = board_.personality.dialect().alarm_delay, .until = std::nullopt}});
+  return true;
+}
+
+bool Foreground::operator()(StopAtSoftLimit& step) {
+  if (!step.begun) {
+    step.begun = true;
+    cycle_.stop_before_limit();
+  }
+  if (cycle_.is_decelerating()) return wait_for(WaitingFor::MotionToFinish);
+  enter_critical_alarm(AlarmCode::SoftLimit);
+  return true;
+}
+
+bool Foreground::operator()(EnterCritical& /*step*/) {
+  board_.critical = true;
+  if (board_.personality.dialect().critical_alarm_answers_lines) {
+    receiver_.clear();
+    reader_.clear();
+    in_line_ = false;
+  }
+  return true;
+}
+
+bool Foreground::operator()(EnterSleep& /*step*/) {
+  cycle_.sleep();
+  return true;
+}
+
+bool Foreground::operator()(EnterToolChange& /*step*/) {
+  if (board_.state == MachineState::Check) {
+    board_.interpreter.complete_tool_change();
+    return true;
+  }
+  board_.state = MachineState::Tool;
+  board_.tool_acknowledged = false;
+  return true;
+}
+
+}  // namespace kerf::firmware

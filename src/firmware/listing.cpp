@@ -1,0 +1,308 @@
+#include "firmware/listing.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "common/base/text.hpp"
+
+namespace kerf::firmware {
+
+using vocabulary::SettingRow;
+using vocabulary::SettingType;
+
+namespace {
+
+std::string letters_of(AxisMask axes, int count) {
+  std::string letters;
+  for (int axis = 0; axis < count; ++axis) {
+    if (((axes >> static_cast<unsigned>(axis)) & 1U) != 0) letters += vocabulary::kAxisLetters[static_cast<std::size_t>(axis)];
+  }
+  return letters;
+}
+
+std::string path_of(const SettingsStore::Slot& slot) {
+  const SettingRow& row = *slot.match.row;
+  if (!row.per_axis) return std::string{row.path};
+  return std::string(1, vocabulary::kAxisLetters[static_cast<std::size_t>(slot.match.axis)]) + std::string{row.path};
+}
+
+std::string type_words(const SettingRow& row) {
+  switch (row.type) {
+    case SettingType::Bool: return " as boolean";
+    case SettingType::Bitfield: return " as bitfield:";
+    case SettingType::ExclusiveBitfield: return " as bitfield where setting bit 0 enables the rest:";
+    case SettingType::Radio: return ":";
+    case SettingType::Axes: return " as axismask";
+    default: return {};
+  }
+}
+
+std::string range_words(const SettingRow& row) {
+  if (row.min.has_value() && row.max.has_value()) {
+    return ", range: " + std::string{row.min.text()} + " - " + std::string{row.max.text()};
+  }
+  if (row.min.has_value()) return ", min: " + std::string{row.min.text()};
+  if (row.max.has_value()) return ", max: " + std::string{row.max.text()};
+  return {};
+}
+
+bool is_list(SettingType type) {
+  return type == SettingType::Bitfield || type == SettingType::ExclusiveBitfield || type == SettingType::Radio;
+}
+
+bool is_compiled_in(const vocabulary::CodeRow& row) {
+  return row.build == vocabulary::BuildOption::Usual;
+}
+
+}  // namespace
+
+std::string key_of(const SettingsStore::Slot& slot) {
+  const SettingRow& row = *slot.match.row;
+  return row.id >= 0 ? std::to_string(row.id + slot.match.axis) : path_of(slot);
+}
+
+void Listing::line(std::string text) {
+  board_.say(protocol::Unrecognized{.line = std::move(text)});
+}
+
+void Listing::help() {
+  board_.say(protocol::HelpRow{.text = std::string{board_.personality.help}});
+}
+
+void Listing::help_on(std::string_view topic) {
+  if (topic.empty()) {
+    help_topics();
+    return;
+  }
+  if (topic == "COMMANDS") {
+    commands();
+    return;
+  }
+  for (const auto& slot : board_.settings.slots()) {
+    for (const auto& group : vocabulary::setting_group_rows()) {
+      if (group.id == vocabulary::group_of(slot.match) && base::iequals(group.name, topic)) describe_setting(slot);
+    }
+  }
+}
+
+void Listing::help_topics() {
+  line("Help topics:");
+  line(" Commands");
+  line(" Settings");
+  for (const auto& group : vocabulary::setting_group_rows()) {
+    const bool in_use = std::ranges::any_of(board_.settings.slots(), [&](const SettingsStore::Slot& slot) {
+      return vocabulary::group_of(slot.match) == group.id;
+    });
+    if (in_use) line(" " + std::string{group.name});
+  }
+}
+
+void Listing::settings() {
+  for (const auto& slot : board_.settings.slots()) {
+    if (slot.match.row->id >= 0) one_setting(slot);
+  }
+}
+
+void Listing::one_setting(const SettingsStore::Slot& slot) {
+  board_.say(protocol::SettingValue{.id = key_of(slot), .value = slot.text});
+}
+
+void Listing::named_settings() {
+  for (const auto& slot : board_.settings.slots()) {
+    board_.say(protocol::SettingValue{.id = path_of(slot), .value = slot.text});
+  }
+}
+
+void Listing::changed_settings() {
+  for (const auto& slot : board_.settings.slots()) {
+    const std::string_view usual = slot.match.row->default_value;
+    if (slot.text == usual) continue;
+    board_.say(protocol::SettingValue{.id = path_of(slot), .value = slot.text + "(Default=" + std::string{usual} + ")"});
+  }
+}
+
+void Listing::setting_names() {
+  for (const auto& slot : board_.settings.slots()) {
+    if (slot.match.row->id >= 0) line("$" + key_of(slot) + " => $" + path_of(slot));
+  }
+}
+
+void Listing::commands() {
+  for (const CommandRow& row : board_.personality.commands) {
+    if (!row.name.empty()) line("$" + std::string{row.name});
+  }
+}
+
+void Listing::describe_setting(const SettingsStore::Slot& slot) {
+  const SettingRow& row = *slot.match.row;
+  std::string text = "$" + key_of(slot) + ": " + vocabulary::full_name(slot.match);
+  if (!row.unit.empty()) text += " in " + std::string{row.unit};
+  text += type_words(row) + range_words(row);
+  if (row.reboot) text += ", reboot required";
+  line("");
+  line(std::move(text));
+  if (!is_list(row.type)) return;
+  const int items = static_cast<int>(std::ranges::count(row.format, ',')) + 1;
+  for (int index = 0; index < items; ++index) {
+    const std::string_view item = vocabulary::item_of(row, index);
+    if (item == "N/A") continue;
+    std::string entry = "    " + std::to_string(index) + " - " + std::string{item};
+    if (row.type != SettingType::Radio) entry += " (" + std::to_string(1U << static_cast<unsigned>(index)) + ")";
+    line(std::move(entry));
+  }
+}
+
+void Listing::setting_description(std::string_view key) {
+  const auto* slot = board_.settings.find(key);
+  if (slot == nullptr) return;
+  board_.say(protocol::SettingDescription{.id = slot->match.row->id + slot->match.axis,
+                                          .text = std::string{slot->match.row->description}});
+}
+
+void Listing::startup_lines() {
+  int index = 0;
+  for (const std::string& block : board_.stored.startup_lines) {
+    board_.say(protocol::StartupLine{.index = index++, .block = block});
+  }
+}
+
+std::string Listing::option_letters() const {
+  const auto& settings = board_.settings;
+  if (board_.personality.firmware != vocabulary::Firmware::GrblHal) {
+    return std::string{board_.personality.dialect().options};
+  }
+  // grblHAL report.c report_build_info: most letters follow settings.
+  constexpr int kSpindleOptions = 9;
+  constexpr int kParking = 41;
+  std::string letters = "VNM";
+  if (settings.flag(kParking)) letters += 'P';
+  if (settings.flag(setting::kHoming, homing_bit::kOriginZero)) letters += 'Z';
+  if (settings.flag(setting::kHoming, homing_bit::kSingleAxis)) letters += 'H';
+  if (settings.flag(setting::kHoming, 4)) letters += 'T';
+  if (settings.flag(setting::kProbeOptions)) letters += 'A';
+  if (settings.flag(kSpindleOptions, 1)) letters += '0';
+  if (settings.flag(kParking, 2)) letters += 'R';
+  if (!settings.flag(setting::kHoming, homing_bit::kRequiredAtStart)) letters += 'L';
+  letters += '+';
+  if (!board_.reports(vocabulary::ReportBit::SyncOnWorkOffsetChange)) letters += 'W';
+  return letters;
+}
+
+std::vector<std::string> Listing::new_options() const {
+  const auto& settings = board_.settings;
+  std::vector<std::string> flags = {"ENUMS", settings.flag(setting::kLegacyRealtime) ? "RT+" : "RT-"};
+  if (settings.flag(setting::kHoming)) flags.emplace_back("HOME");
+  if (settings.number(setting::kMode) == 2.0) flags.emplace_back("LATHE");
+  if (settings.number(setting::kToolChangeMode) != 4.0) flags.emplace_back("TC");
+  flags.emplace_back("SED");
+  return flags;
+}
+
+void Listing::build_information(bool extended) {
+  const vocabulary::Dialect& dialect = board_.personality.dialect();
+  const bool has_text = board_.personality.firmware != vocabulary::Firmware::Rabbit;
+  board_.say(protocol::Version{.version = std::string{dialect.version},
+                               .build = std::string{dialect.build},
+                               .user_text = board_.stored.user_text,
+                               .has_user_text = has_text});
+  protocol::BuildOptions options{.letters = option_letters()};
+  if (dialect.planner_blocks.printed != 0) options.planner_blocks = dialect.planner_blocks.printed;
+  if (dialect.rx_bytes.printed != 0) options.rx_bytes = dialect.rx_bytes.printed;
+  if (extended) {
+    options.planner_blocks = board_.planner.free_blocks() + board_.planner.block_count();
+    options.axes = board_.settings.axes();
+    options.tools = 0;
+  }
+  board_.say(options);
+  if (!extended) return;
+  board_.say(protocol::AxisNames{.count = board_.settings.axes(),
+                                 .letters = letters_of(board_.all_axes(), board_.settings.axes())});
+  board_.say(protocol::NewOptions{.flags = new_options()});
+  board_.say(protocol::FirmwareName{.name = std::string{dialect.firmware_field}});
+  for (const auto& [key, value] : board_.personality.build_rows) {
+    board_.say(protocol::BuildRow{.key = std::string{key}, .value = std::string{value}});
+  }
+}
+
+void Listing::alarms() {
+  for (const auto& row : board_.personality.dialect().alarms) {
+    if (row.code != 0 && is_compiled_in(row)) one_alarm(row.code);
+  }
+}
+
+bool Listing::one_alarm(int code) {
+  const auto* row = vocabulary::find_code(board_.personality.dialect().alarms, code);
+  if (row == nullptr) return false;
+  board_.say(protocol::AlarmCodeRow{
+      .id = code, .title = titles() ? std::string{row->title} : std::string{}, .text = std::string{row->text}});
+  return true;
+}
+
+void Listing::errors() {
+  board_.say(protocol::ErrorCodeRow{});
+  for (const auto& row : board_.personality.dialect().errors) {
+    if (row.code != 0 && is_compiled_in(row)) one_error(row.code);
+  }
+}
+
+bool Listing::one_error(int code) {
+  const auto* row = vocabulary::find_code(board_.personality.dialect().errors, code);
+  if (row == nullptr) return false;
+  board_.say(protocol::ErrorCodeRow{
+      .id = code, .title = titles() ? std::string{row->title} : std::string{}, .text = std::string{row->text}});
+  return true;
+}
+
+void Listing::setting_groups() {
+  std::set<int> in_use = {0};
+  for (const auto& slot : board_.settings.slots()) in_use.insert(vocabulary::group_of(slot.match));
+  for (const auto& group : vocabulary::setting_group_rows()) {
+    if (in_use.contains(group.id)) in_use.insert(group.parent);
+  }
+  for (const auto& group : vocabulary::setting_group_rows()) {
+    if (!in_use.contains(group.id)) continue;
+    board_.say(protocol::SettingGroupRow{.id = group.id, .parent = group.parent, .name = std::string{group.name}});
+  }
+}
+
+void Listing::setting_definitions() {
+  for (const auto& slot : board_.settings.slots()) {
+    const SettingRow& row = *slot.match.row;
+    if (row.id < 0) continue;
+    board_.say(protocol::SettingDefinition{.id = row.id + slot.match.axis,
+                                           .group = vocabulary::group_of(slot.match),
+                                           .name = vocabulary::full_name(slot.match),
+                                           .unit = std::string{row.unit},
+                                           .type = static_cast<int>(row.type),
+                                           .format = std::string{row.format},
+                                           .min = std::string{row.min.text()},
+                                           .max = std::string{row.max.text()},
+                                           .reboot = row.reboot,
+                                           .allow_null = row.allow_null});
+  }
+}
+
+void Listing::limits() {
+  board_.say(protocol::BuildRow{.key = "LIMITS", .value = letters_of(board_.limits(), board_.settings.axes()) + ",,,"});
+}
+
+void Listing::home_switches() {
+  board_.say(protocol::BuildRow{.key = "HOMES", .value = letters_of(board_.limits(), board_.settings.axes()) + ",:L"});
+}
+
+void Listing::last_events() {
+  board_.say(protocol::BuildRow{.key = "LASTEVENTS", .value = ",,,,"});
+}
+
+void Listing::spindles(bool for_machines) {
+  if (!for_machines) {
+    line("0 - simulated PWM spindle");
+    return;
+  }
+  board_.say(protocol::BuildRow{
+      .key = "SPINDLE",
+      .value = "0|0|0|*DRV|simulated PWM spindle|" + base::to_fixed(board_.settings.number(setting::kSpindleMin), 1) +
+               "," + base::to_fixed(board_.settings.number(setting::kSpindleMax), 1)});
+}
+
+}  // namespace kerf::firmware

@@ -1,0 +1,55 @@
+#pragma once
+// What `$` queries list: settings, codes, build information, help (protocol.md 4.5, 4.6, 5).
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "firmware/board.hpp"
+
+namespace kerf::firmware {
+
+/// Prints lists about the controller. Changes nothing.
+class Listing {
+ public:
+  explicit Listing(Board& board) : board_(board) {}
+
+  void help();
+  /// `$HELP` and `$HELP topic`, the topic in capitals.
+  void help_on(std::string_view topic);
+  void settings();
+  void changed_settings();
+  void named_settings();
+  void setting_names();
+  void commands();
+  void one_setting(const SettingsStore::Slot& slot);
+  void describe_setting(const SettingsStore::Slot& slot);
+  void setting_description(std::string_view key);
+  void startup_lines();
+  void build_information(bool extended);
+  void alarms();
+  void errors();
+  void setting_groups();
+  void setting_definitions();
+  void limits();
+  void home_switches();
+  void last_events();
+  void spindles(bool for_machines);
+  /// One alarm or error by number (Rabbit `$EA=n`); false if there is none.
+  bool one_alarm(int code);
+  bool one_error(int code);
+
+ private:
+  void help_topics();
+  void line(std::string text);
+  [[nodiscard]] std::string option_letters() const;
+  [[nodiscard]] std::vector<std::string> new_options() const;
+  [[nodiscard]] bool titles() const { return board_.personality.firmware != vocabulary::Firmware::GrblHal; }
+
+  Board& board_;
+};
+
+/// A setting's number, or its name where it has no number.
+[[nodiscard]] std::string key_of(const SettingsStore::Slot& slot);
+
+}  // namespace kerf::firmware

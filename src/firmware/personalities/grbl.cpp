@@ -1,0 +1,46 @@
+// Grbl 1.1h as its reference build behaves (gnea/grbl; protocol.md).
+
+#include "firmware/personalities/personalities.hpp"
+
+#include "firmware/settings_store.hpp"
+#include "firmware/system_commands.hpp"
+
+namespace kerf::firmware {
+
+namespace {
+
+constexpr StateSet kNotInCycle = {MachineState::Idle,  MachineState::Jog,  MachineState::Home,  MachineState::Alarm,
+                                  MachineState::Check, MachineState::Door, MachineState::Sleep, MachineState::Tool};
+
+// Names with `=` take a value.
+constexpr CommandRow kCommands[] = {
+    {.name = "$", .command = Command::ListSettings, .states = kNotInCycle},
+    {.name = "G", .command = Command::ParserState},
+    {.name = "C", .command = Command::CheckMode, .states = {MachineState::Idle, MachineState::Check}},
+    {.name = "X", .command = Command::Unlock},
+    {.name = "#", .command = Command::Parameters},
+    {.name = "SLP", .command = Command::Sleep},
+    {.name = "I", .command = Command::BuildInformation},
+    {.name = "I=", .command = Command::StoreUserText},
+    {.name = "RST=", .command = Command::Restore},
+};
+
+}  // namespace
+
+const Personality kGrbl = {
+    .firmware = vocabulary::Firmware::Grbl,
+    .start = {.blank_memory_error = true,
+              .blank_memory_lists_settings = true,
+              .homing_locks = true,
+              .limits_lock = true},
+    .homing = {.fixed_cycles = {0b100, 0b011}},
+    .realtime = {.same_instant_collapses = true, .toggles_coolant_in_jog = true},
+    .stored_writes_synchronise = true,
+    .soft_limits_in_check = true,
+    .parse_command = parse_command_grbl,
+    .check_setting = check_setting_grbl,
+    .commands = kCommands,
+    .help = "$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H ~ ! ? ctrl-x",
+};
+
+}  // namespace kerf::firmware

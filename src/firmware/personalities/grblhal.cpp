@@ -1,0 +1,114 @@
+// grblHAL at compatibility level 0, as its simulator build behaves (grblHAL/core; protocol.md).
+
+#include "firmware/personalities/personalities.hpp"
+
+#include "firmware/settings_store.hpp"
+#include "firmware/system_commands.hpp"
+
+namespace kerf::firmware {
+
+namespace {
+
+constexpr StateSet kIdleOrAlarm = {MachineState::Idle, MachineState::Alarm};
+constexpr StateSet kSettled = {MachineState::Idle, MachineState::Alarm, MachineState::Check};
+constexpr StateSet kInformed = {MachineState::Idle, MachineState::Alarm, MachineState::Check, MachineState::Sleep};
+constexpr StateSet kNotInCycle = {MachineState::Idle,  MachineState::Jog,  MachineState::Home,  MachineState::Alarm,
+                                  MachineState::Check, MachineState::Door, MachineState::Sleep, MachineState::Tool};
+
+constexpr CommandRow kCommands[] = {
+    {.name = "G", .command = Command::ParserState},
+    {.name = "J",
+     .command = Command::Jog,
+     .states = {MachineState::Idle, MachineState::Jog, MachineState::Tool},
+     .takes_value = true,
+     .needs_value = true,
+     .works_critically = false},
+    {.name = "#", .command = Command::Parameters, .takes_value = true},
+    {.name = "$", .command = Command::DescribeSetting, .takes_value = true},
+    {.name = "+", .command = Command::ListSettings, .states = kNotInCycle},
+    {.name = "SED", .command = Command::SettingDescription, .takes_value = true},
+    {.name = "B", .command = Command::BlockDelete, .works_critically = false},
+    {.name = "S", .command = Command::SingleBlock, .works_critically = false},
+    {.name = "O", .command = Command::OptionalStop, .works_critically = false},
+    {.name = "C",
+     .command = Command::CheckMode,
+     .states = {MachineState::Idle, MachineState::Check},
+     .works_critically = false},
+    {.name = "X", .command = Command::Unlock, .works_critically = false},
+    {.name = "H", .command = Command::Home, .states = kIdleOrAlarm, .works_critically = false},
+    {.name = "HX", .command = Command::Home, .prefix = "X", .works_critically = false},
+    {.name = "HY", .command = Command::Home, .prefix = "Y", .works_critically = false},
+    {.name = "HZ", .command = Command::Home, .prefix = "Z", .works_critically = false},
+    {.name = "HSS", .command = Command::ReportHomeSwitches},
+    {.name = "SPINDLES", .command = Command::ListSpindles},
+    {.name = "SPINDLESH", .command = Command::ListSpindlesForMachines},
+    {.name = "SLP", .command = Command::Sleep, .works_critically = false},
+    {.name = "TLR", .command = Command::SetToolReference, .works_critically = false},
+    {.name = "TPW", .command = Command::ProbeToolPlate, .works_critically = false},
+    {.name = "I", .command = Command::BuildInformation, .states = kInformed, .takes_value = true},
+    {.name = "I+", .command = Command::ExtendedBuildInformation},
+    {.name = "RST", .command = Command::Restore, .states = kIdleOrAlarm, .takes_value = true, .needs_value = true},
+    {.name = "N", .command = Command::ListStartupLines, .states = kSettled},
+    {.name = "N0",
+     .command = Command::StoreStartupLine,
+     .prefix = "0",
+     .takes_value = true,
+     .needs_value = true,
+     .works_critically = false},
+    {.name = "N1",
+     .command = Command::StoreStartupLine,
+     .prefix = "1",
+     .takes_value = true,
+     .needs_value = true,
+     .works_critically = false},
+    {.name = "EA", .command = Command::ListAlarms},
+    {.name = "EE", .command = Command::ListErrors},
+    {.name = "EG", .command = Command::ListSettingGroups},
+    {.name = "ES", .command = Command::ListSettingDefinitions},
+    {.name = "E*", .command = Command::ListEverything},
+    {.name = "PINS", .command = Command::ReportNothing},
+    {.name = "PINSTATE", .command = Command::ReportNothing},
+    {.name = "PORTS", .command = Command::ReportNothing},
+    {.name = "LEV", .command = Command::ReportLastEvents},
+    {.name = "LIM", .command = Command::ReportLimits},
+};
+
+constexpr std::array<std::string_view, 2> kBuildRows[] = {
+    {"SIGNALS", "D"},
+    {"NVS STORAGE", "*EEPROM"},
+    {"DRIVER", "Kerf"},
+    {"DRIVER VERSION", "1"},
+};
+
+}  // namespace
+
+const Personality kGrblHal = {
+    .firmware = vocabulary::Firmware::GrblHal,
+    .start = {.blank_memory_error = true,
+              .has_homing_alarm = true,
+              .same_alarm_is_silent = true,
+              .startup_blocks_split = true,
+              .has_reset_actions = true},
+    .homing = {.fixed_cycles = {},
+               .cycle_setting = 44,
+               .cycle_settings = 3,
+               .passes_setting = 43,
+               .locate_scalar = 10.0F,
+               .announces = true,
+               .tracks_axes = true},
+    .status = {.when_critical = true, .first_is_overrides = true, .counts_changes = true, .accessories_alone = true},
+    .realtime = {.mist_toggle = true,
+                 .resume_says_nothing_said = true,
+                 .door_resuming_substate = 4,
+                 .door_again_ignored = true},
+    .reads_lines_in_sleep = true,
+    .sleep_needs_setting = true,
+    .has_work_offset_sync_bit = true,
+    .parse_command = parse_command_grblhal,
+    .check_setting = check_setting_grblhal,
+    .commands = kCommands,
+    .help = "$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H $B ~ ! ? ctrl-x",
+    .build_rows = kBuildRows,
+};
+
+}  // namespace kerf::firmware

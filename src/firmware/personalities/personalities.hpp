@@ -1,0 +1,12 @@
+#pragma once
+// The tables of this folder, one a firmware.
+
+#include "firmware/personality.hpp"
+
+namespace kerf::firmware {
+
+extern const Personality kGrbl;
+extern const Personality kRabbit;
+extern const Personality kGrblHal;
+
+}  // namespace kerf::firmware

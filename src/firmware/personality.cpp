@@ -1,0 +1,30 @@
+#include "firmware/personality.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "firmware/personalities/personalities.hpp"
+
+namespace kerf::firmware {
+
+namespace {
+
+constexpr std::array<const Personality*, 3> kAll = {&kGrbl, &kRabbit, &kGrblHal};
+
+}  // namespace
+
+std::span<const Personality* const> all_personalities() {
+  return kAll;
+}
+
+const Personality& personality_of(vocabulary::Firmware firmware) {
+  const auto found = std::ranges::find(kAll, firmware, &Personality::firmware);
+  return found == kAll.end() ? kGrbl : **found;
+}
+
+const Personality* personality_named(std::string_view name) {
+  const auto found = std::ranges::find(kAll, name, [](const Personality* one) { return one->dialect().key; });
+  return found == kAll.end() ? nullptr : *found;
+}
+
+}  // namespace kerf::firmware

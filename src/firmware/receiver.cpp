@@ -1,0 +1,41 @@
+#include "firmware/receiver.hpp"
+
+namespace kerf::firmware {
+
+namespace {
+
+constexpr std::uint8_t kFirstKeptByte = 0xC0;
+
+bool is_printable_realtime(std::uint8_t byte) {
+  return byte == '?' || byte == '!' || byte == '~';
+}
+
+}  // namespace
+
+Receiver::Fate Receiver::take(std::uint8_t byte, bool keeps_realtime_characters) {
+  const bool is_text = keeps_realtime_characters && (is_printable_realtime(byte) || byte >= kFirstKeptByte);
+  const bool is_realtime = !is_text && vocabulary::is_realtime(personality_.dialect(), byte);
+  if (is_realtime && !(full() && personality_.full_buffer_drops_realtime)) return Fate::Realtime;
+  if (is_realtime || !ring_.push_back(static_cast<char>(byte))) return Fate::Lost;
+  return Fate::Buffered;
+}
+
+void Receiver::cancel() {
+  ring_.clear();
+  static_cast<void>(ring_.push_back(kCancelMark));
+}
+
+void Receiver::set_aside() {
+  std::string bytes;
+  while (!ring_.empty()) bytes += ring_.pop_front();
+  aside_ = std::move(bytes);
+}
+
+void Receiver::restore() {
+  if (!aside_) return;
+  ring_.clear();
+  for (const char byte : *aside_) static_cast<void>(ring_.push_back(byte));
+  aside_.reset();
+}
+
+}  // namespace kerf::firmware

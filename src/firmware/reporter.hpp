@@ -1,0 +1,49 @@
+#pragma once
+// Status reports and the other things a controller says about its state.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "firmware/board.hpp"
+
+namespace kerf::firmware {
+
+/// Makes reports from the board. A status report pays the board's report debts and moves its counters (protocol.md 3).
+class Reporter {
+ public:
+  explicit Reporter(Board& board) : board_(board) {}
+
+  /// Says `<...>`, and on grblHAL with `$10` bit 9 the parser state behind it when it has changed.
+  void say_status(std::size_t rx_free);
+  /// `[GC:...]`
+  void say_parser_state();
+  /// `[TLO:...]`
+  void say_tool_length_offset();
+  /// `[PRB:...]`
+  void say_probe();
+  /// Everything of `$#`.
+  void say_parameters();
+
+  [[nodiscard]] protocol::StatusReport status(std::size_t rx_free);
+
+ private:
+  void add_position(protocol::StatusReport& report) const;
+  void add_speed(protocol::StatusReport& report) const;
+  void add_counted(protocol::StatusReport& report);
+  void add_counted_grbl(protocol::StatusReport& report);
+  void add_counted_grblhal(protocol::StatusReport& report);
+  void add_changed(protocol::StatusReport& report) const;
+  void say_changed_parser_state();
+
+  [[nodiscard]] std::string pins() const;
+  [[nodiscard]] std::string accessory_letters(bool with_tool_change) const;
+  /// One value an axis, in the units of `$13`.
+  [[nodiscard]] std::vector<double> in_report_units(const AxisValues& mm) const;
+  [[nodiscard]] bool is_busy() const;
+
+  Board& board_;
+  std::vector<std::string> last_words_;
+};
+
+}  // namespace kerf::firmware

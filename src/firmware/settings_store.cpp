@@ -1,0 +1,144 @@
+#include "firmware/settings_store.hpp"
+
+#include "common/base/text.hpp"
+
+namespace kerf::firmware {
+
+using vocabulary::SettingMatch;
+using vocabulary::SettingRow;
+using vocabulary::SettingType;
+
+namespace {
+
+bool is_text(SettingType type) {
+  return type == SettingType::Text || type == SettingType::Password || type == SettingType::Ipv4;
+}
+
+/// A mask over all axes is written down for three of them (vocabulary::SettingRow).
+std::string default_text(const SettingRow& row, int axes) {
+  if (row.type == SettingType::Axes && row.default_value == "7") return std::to_string((1 << axes) - 1);
+  return std::string{row.default_value};
+}
+
+}  // namespace
+
+SettingsStore::SettingsStore(const Personality& personality)
+    : personality_(personality), rows_(personality.dialect().settings), axes_(personality.dialect().axes_default) {
+  for (const SettingRow& row : rows_) {
+    first_slot_.push_back(slots_.size());
+    if (row.build != vocabulary::BuildOption::Usual) continue;
+    const int count = row.per_axis ? axes_ : 1;
+    for (int axis = 0; axis < count; ++axis) slots_.push_back({.match = {.row = &row, .axis = axis}, .text = {}});
+  }
+  restore_defaults();
+}
+
+void SettingsStore::restore_defaults() {
+  for (Slot& slot : slots_) set(slot.match, default_text(*slot.match.row, axes_));
+}
+
+std::vector<std::string> SettingsStore::load(const StoredState& stored) {
+  restore_defaults();
+  std::vector<std::string> refused;
+  for (const auto& [key, text] : stored.settings) {
+    if (!write(key, text)) refused.push_back(key);
+  }
+  // A second pass takes what depended on a later number, such as soft limits on homing.
+  std::erase_if(refused, [&](const std::string& key) { return write(key, stored.settings.at(key)).has_value(); });
+  return refused;
+}
+
+void SettingsStore::save(StoredState& stored) const {
+  stored.settings.clear();
+  for (const Slot& slot : slots_) {
+    const SettingRow& row = *slot.match.row;
+    if (slot.text == default_text(row, axes_)) continue;
+    const std::string key = row.id >= 0 ? std::to_string(row.id + slot.match.axis) : std::string{row.path};
+    stored.settings.insert_or_assign(key, slot.text);
+  }
+}
+
+std::expected<void, ErrorCode> SettingsStore::write(std::string_view key, std::string_view text) {
+  const Slot* slot = find(key);
+  if (slot == nullptr) {
+    const bool says_disabled = personality_.firmware == vocabulary::Firmware::GrblHal;
+    return std::unexpected(says_disabled ? ErrorCode::SettingDisabled : ErrorCode::InvalidStatement);
+  }
+  auto checked = personality_.check_setting(*this, slot->match, text);
+  if (!checked) return std::unexpected(checked.error());
+  set(slot->match, std::move(*checked));
+  apply_consequences();
+  return {};
+}
+
+void SettingsStore::set(const SettingMatch& match, std::string text) {
+  auto& slot = slots_.at(first_slot_.at(static_cast<std::size_t>(match.row - rows_.data())) +
+                         static_cast<std::size_t>(match.axis));
+  slot.number = is_text(match.row->type) ? 0.0 : base::parse_decimal(text).value_or(0.0);
+  slot.text = std::move(text);
+}
+
+void SettingsStore::apply_consequences() {
+  // Without homing there are no soft limits, nor clipped jogs (gnea/grbl settings.c; grblHAL settings.c).
+  if (flag(setting::kHoming)) return;
+  for (const int id : {setting::kSoftLimits, setting::kLimitJogs}) {
+    const auto match = vocabulary::find_setting(rows_, id, axes_);
+    if (match && match->row->type == SettingType::Bool && slot_of(*match) != nullptr) set(*match, "0");
+  }
+}
+
+const SettingsStore::Slot* SettingsStore::slot_of(const SettingMatch& match) const {
+  if (match.row->build != vocabulary::BuildOption::Usual) return nullptr;
+  return &slots_.at(first_slot_.at(static_cast<std::size_t>(match.row - rows_.data())) +
+                    static_cast<std::size_t>(match.axis));
+}
+
+const SettingsStore::Slot* SettingsStore::find(std::string_view key) const {
+  const auto match = vocabulary::find_setting(rows_, key, axes_);
+  return match ? slot_of(*match) : nullptr;
+}
+
+double SettingsStore::number(int id, int axis) const {
+  const auto match = vocabulary::find_setting(rows_, id + axis, axes_);
+  const Slot* slot = match ? slot_of(*match) : nullptr;
+  return slot != nullptr ? slot->number : 0.0;
+}
+
+bool SettingsStore::flag(int id, unsigned bit) const {
+  return ((mask(id) >> bit) & 1U) != 0;
+}
+
+vocabulary::AxisValues SettingsStore::axis_values(int id) const {
+  vocabulary::AxisValues values{};
+  for (int axis = 0; axis < axes_; ++axis) {
+    values.at(static_cast<std::size_t>(axis)) = static_cast<float>(number(id, axis));
+  }
+  return values;
+}
+
+motion::MotionSettings SettingsStore::motion() const {
+  return {
+      .axes = axes_,
+      .steps_per_mm = axis_values(setting::kStepsPerMm),
+      .max_rate_mm_per_min = axis_values(setting::kMaxRate),
+      .acceleration_mm_per_s2 = axis_values(setting::kAcceleration),
+      .junction_deviation_mm = static_cast<float>(number(setting::kJunctionDeviation)),
+      .arc_tolerance_mm = static_cast<float>(number(setting::kArcTolerance)),
+      .laser_mode = number(setting::kMode) == 1.0,
+      .idle_delay_ms = static_cast<std::uint8_t>(mask(setting::kIdleDelay) & 0xFFU),
+      .planner_blocks = static_cast<int>(number(setting::kPlannerBlocks)),
+  };
+}
+
+void SettingsStore::configure(gcode::InterpreterSettings& settings) const {
+  settings.axes = axes_;
+  settings.laser_mode = number(setting::kMode) == 1.0;
+  if (personality_.firmware != vocabulary::Firmware::GrblHal) return;
+  settings.ignore_tool_change = number(setting::kToolChangeMode) == 4.0;
+  settings.g92_volatile = flag(setting::kG92Volatile);
+  settings.restore_overrides_at_end = flag(setting::kRestoreOverrides);
+  settings.locked_work_offsets = mask(setting::kLockedOffsets);
+  settings.g73_retract_mm = static_cast<float>(number(setting::kG73Retract));
+}
+
+}  // namespace kerf::firmware

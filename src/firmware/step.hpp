@@ -1,0 +1,114 @@
+#pragma once
+// What is left to do for the line being executed, or after a reset: small steps, each of which may have to wait.
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "common/base/time.hpp"
+#include "common/gcode/action.hpp"
+#include "common/motion/arc.hpp"
+#include "common/protocol/message.hpp"
+#include "common/vocabulary/alarms.hpp"
+#include "common/vocabulary/axis.hpp"
+#include "common/vocabulary/errors.hpp"
+
+namespace kerf::firmware {
+
+/// Says `ok` or `error:N`; the last step of every line.
+struct Answer {
+  vocabulary::ErrorCode code = vocabulary::ErrorCode::Ok;
+};
+struct Say {
+  protocol::Message message{};
+};
+/// Says a status report (grblHAL at the start of `$H` and the end of a tool change).
+struct SayStatus {};
+struct SayProbe {};
+/// Queues a straight line; waits for planner room.
+struct PlanMove {
+  gcode::LinearMove move{};
+};
+/// Queues an arc chord by chord; waits for planner room each time.
+struct PlanArc {
+  gcode::ArcMove move{};
+  vocabulary::AxisValues start_mm{};
+  std::optional<motion::ArcChords> chords{};
+};
+/// Queues a jog and starts it.
+struct PlanJog {
+  gcode::JogMove move{};
+};
+/// Waits until all motion has come to its end.
+struct Synchronize {};
+/// Waits; stands still while the machine is held.
+struct Dwell {
+  Duration left{};
+};
+/// The main loop is busy and does not even look for realtime requests.
+struct Freeze {
+  Duration duration{};
+  std::optional<Instant> until{};
+};
+/// Carries out an action that takes no time.
+struct Perform {
+  gcode::Action action{};
+};
+/// M0 and single block: holds until cycle start.
+struct HoldForCycleStart {
+  bool begun = false;
+};
+struct Probe {
+  gcode::ProbeMove move{};
+  enum class Phase : std::uint8_t { Check, Moving, Cancelling } phase = Phase::Check;
+};
+/// One `$H`; the cycles in order.
+struct HomeAxes {
+  std::deque<vocabulary::AxisMask> cycles{};
+  bool begun = false;
+};
+struct RaiseAlarm {
+  vocabulary::AlarmCode code{};
+};
+/// A target lies outside the travel: hold, then ALARM:2.
+struct StopAtSoftLimit {
+  bool begun = false;
+};
+/// Nothing but a reset helps from here on.
+struct EnterCritical {};
+/// The end of a reset: everything is initialised anew.
+struct Restart {};
+/// Checks what forbids normal operation after the welcome, else queues the startup lines.
+struct CheckAtStart {};
+/// Runs `$N0` and `$N1`.
+struct RunStartupLines {};
+struct RunStartupBlock {
+  std::string block{};
+};
+struct EnterSleep {};
+struct EnterToolChange {};
+/// State Idle and, where the firmware does so, `[MSG:]` and startup lines.
+struct FinishHoming {
+  vocabulary::AxisMask asked = 0;  ///< 0: all
+};
+
+using Step = std::variant<Answer, Say, SayStatus, SayProbe, PlanMove, PlanArc, PlanJog, Synchronize, Dwell, Freeze,
+                          Perform, HoldForCycleStart, Probe, HomeAxes, RaiseAlarm, StopAtSoftLimit, EnterCritical,
+                          Restart, CheckAtStart, RunStartupLines, RunStartupBlock, EnterSleep, EnterToolChange,
+                          FinishHoming>;
+
+/// What the foreground is waiting for, to be looked at.
+enum class WaitingFor : std::uint8_t {
+  Nothing,
+  PlannerRoom,
+  MotionToFinish,
+  Time,
+  CycleStart,
+  Contact,
+};
+
+using Steps = std::deque<Step>;
+
+}  // namespace kerf::firmware

@@ -1,0 +1,379 @@
+#include "firmware/system_commands.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "common/base/text.hpp"
+#include "firmware/block_steps.hpp"
+
+namespace kerf::firmware {
+
+using vocabulary::FeedbackText;
+
+namespace {
+
+constexpr std::chrono::milliseconds kRabbitListPause{100};
+constexpr std::chrono::milliseconds kHomingAnnouncement{100};
+constexpr unsigned kLimitsStrictBit = 1;
+
+bool is_grblhal(const Board& board) {
+  return board.personality.firmware == vocabulary::Firmware::GrblHal;
+}
+
+/// What is stored of a startup line: capitals, no blanks, no comments (grblHAL gc_normalize_block).
+std::string normalised(std::string_view line) {
+  std::string text;
+  bool in_comment = false;
+  for (const char letter : line) {
+    if (letter == ';') break;
+    if (letter == '(') in_comment = true;
+    if (!in_comment && !base::is_blank(letter)) text += base::to_upper(letter);
+    if (letter == ')') in_comment = false;
+  }
+  return text;
+}
+
+}  // namespace
+
+bool homing_is_required(const Board& board) {
+  const auto& settings = board.settings;
+  const AxisMask wanted = board.homing_axes();
+  return board.personality.start.has_homing_alarm && settings.flag(setting::kHoming) &&
+         settings.flag(setting::kHoming, homing_bit::kRequiredAtStart) &&
+         (board.cold_start || !settings.flag(setting::kHoming, homing_bit::kOverrideLocks)) && wanted != 0 &&
+         (wanted & board.homed) != wanted;
+}
+
+std::expected<void, ErrorCode> SystemCommands::execute(std::string_view line, Steps& steps) {
+  const auto command = board_.personality.parse_command(board_.personality, line, board_.state, board_.critical);
+  if (!command) return std::unexpected(command.error());
+  if (!command->states.contains(board_.state)) return std::unexpected(ErrorCode::IdleError);
+  Steps added;
+  if (const Result result = dispatch(*command, added); !result) return result;
+  const bool answers =
+      std::ranges::any_of(added, [](const Step& step) { return std::holds_alternative<Answer>(step); });
+  if (!answers) added.emplace_back(Answer{});
+  steps.insert(steps.end(), added.begin(), added.end());
+  return {};
+}
+
+SystemCommands::Result SystemCommands::dispatch(const ParsedCommand& command, Steps& steps) {
+  switch (command.command) {
+    case Command::WriteSetting: return write_setting(command);
+    case Command::ReadSetting: return read_setting(command);
+    case Command::DescribeSetting: return describe_setting(command);
+    case Command::CheckMode: return check_mode(steps);
+    case Command::Unlock: return unlock();
+    case Command::Home: return home(command, steps);
+    case Command::Jog: return jog(command, steps);
+    case Command::StoreUserText: return store_user_text(command);
+    case Command::BuildInformation:
+      if (command.has_value) return store_user_text(command);
+      listing_.build_information(is_grblhal(board_));
+      return {};
+    case Command::StoreStartupLine: return store_startup_line(command, steps);
+    case Command::Restore: return restore(command, steps);
+    case Command::Sleep: return sleep(steps);
+    case Command::BlockDelete:
+    case Command::SingleBlock:
+    case Command::OptionalStop: return toggle(command.command);
+    case Command::SetToolReference: return set_tool_reference();
+    case Command::ProbeToolPlate: return std::unexpected(ErrorCode::InvalidStatement);
+    case Command::Parameters:
+      if (command.has_value) return std::unexpected(ErrorCode::InvalidStatement);
+      reporter_.say_parameters();
+      if (board_.personality.parameters_pause) steps.emplace_back(Freeze{.duration = kRabbitListPause});
+      return {};
+    case Command::ListAlarms:
+    case Command::ListErrors:
+      if (board_.personality.parameters_pause) steps.emplace_back(Freeze{.duration = kRabbitListPause});
+      return list_codes(command);
+    default: return dispatch_listing(command);
+  }
+}
+
+SystemCommands::Result SystemCommands::dispatch_listing(const ParsedCommand& command) {
+  switch (command.command) {
+    case Command::Help: listing_.help(); break;
+    case Command::HelpTopics: listing_.help_on(command.value); break;
+    case Command::ListSettings: listing_.settings(); break;
+    case Command::ListNamedSettings: listing_.named_settings(); break;
+    case Command::ListChangedSettings: listing_.changed_settings(); break;
+    case Command::ListSettingNames: listing_.setting_names(); break;
+    case Command::ListCommands: listing_.commands(); break;
+    case Command::ParserState:
+      reporter_.say_parser_state();
+      board_.report.homed = true;  // grblHAL system.c output_parser_state
+      break;
+    case Command::ExtendedBuildInformation: listing_.build_information(true); break;
+    case Command::ListStartupLines: listing_.startup_lines(); break;
+    case Command::ListSettingGroups: listing_.setting_groups(); break;
+    case Command::ListSettingDefinitions: listing_.setting_definitions(); break;
+    case Command::ListEverything:
+      listing_.alarms();
+      listing_.errors();
+      listing_.setting_groups();
+      listing_.setting_definitions();
+      break;
+    case Command::SettingDescription:
+      if (!base::parse_int<int>(command.value)) return std::unexpected(ErrorCode::BadNumberFormat);
+      listing_.setting_description(command.value);
+      break;
+    case Command::ReportLimits: listing_.limits(); break;
+    case Command::ReportHomeSwitches: listing_.home_switches(); break;
+    case Command::ReportLastEvents: listing_.last_events(); break;
+    case Command::ListSpindles: listing_.spindles(false); break;
+    case Command::ListSpindlesForMachines: listing_.spindles(true); break;
+    default: break;
+  }
+  return {};
+}
+
+SystemCommands::Result SystemCommands::describe_setting(const ParsedCommand& command) {
+  if (!command.has_value) {
+    if (board_.state == MachineState::Run || board_.state == MachineState::Hold) {
+      return std::unexpected(ErrorCode::IdleError);
+    }
+    listing_.settings();
+    return {};
+  }
+  if (!base::parse_int<int>(command.value)) return std::unexpected(ErrorCode::BadNumberFormat);
+  const auto* slot = board_.settings.find(command.value);
+  if (slot == nullptr) return std::unexpected(ErrorCode::SettingDisabled);
+  listing_.describe_setting(*slot);
+  return {};
+}
+
+SystemCommands::Result SystemCommands::read_setting(const ParsedCommand& command) {
+  const auto* slot = board_.settings.find(command.key);
+  if (slot == nullptr) {
+    return std::unexpected(is_grblhal(board_) ? ErrorCode::SettingDisabled : ErrorCode::InvalidStatement);
+  }
+  board_.say(protocol::SettingValue{.id = command.key, .value = slot->text});
+  return {};
+}
+
+SystemCommands::Result SystemCommands::write_setting(const ParsedCommand& command) {
+  const AxisValues position = board_.position_mm();
+  const AxisValues steps_before = board_.planner.settings().steps_per_mm;
+  const AxisValues travel_before = board_.settings.axis_values(setting::kMaxTravel);
+  if (const Result written = board_.settings.write(command.key, command.value); !written) return written;
+  board_.apply_settings();
+  board_.store_settings();
+  if (!is_grblhal(board_)) return {};
+
+  // grblHAL settings.c: a position keeps its millimetres, a new travel makes its axis unhomed, and a new tool change
+  // mode starts tool changes anew.
+  if (const AxisValues& now = board_.planner.settings().steps_per_mm; now != steps_before) {
+    AxisSteps steps = board_.steps();
+    for (std::size_t axis = 0; axis < steps.size(); ++axis) {
+      if (now.at(axis) != steps_before.at(axis)) {
+        steps.at(axis) = static_cast<std::int32_t>(std::lround(position.at(axis) * now.at(axis)));
+      }
+    }
+    board_.executor.set_position(steps);
+    board_.sync_position();
+  }
+  const AxisValues travel = board_.settings.axis_values(setting::kMaxTravel);
+  for (std::size_t axis = 0; axis < travel.size(); ++axis) {
+    if (travel.at(axis) == travel_before.at(axis)) continue;
+    board_.homed = static_cast<AxisMask>(board_.homed & ~(1U << axis));
+    board_.report.homed = true;
+  }
+  if (command.key == std::to_string(setting::kToolChangeMode)) board_.report.tool_reference = true;
+  return {};
+}
+
+SystemCommands::Result SystemCommands::check_mode(Steps& steps) {
+  const bool silent = board_.personality.check_mode_is_silent;
+  if (board_.state == MachineState::Check) {
+    if (!silent) board_.say(FeedbackText::Disabled);
+    steps.insert(steps.end(), {Answer{}, Restart{}});
+    return {};
+  }
+  if (board_.state != MachineState::Idle) return std::unexpected(ErrorCode::IdleError);
+  board_.state = MachineState::Check;
+  board_.interpreter.settings().check_mode = true;
+  if (!silent) board_.say(FeedbackText::Enabled);
+  return {};
+}
+
+std::optional<ErrorCode> SystemCommands::lock_reason(bool homing) const {
+  if (!is_grblhal(board_)) return std::nullopt;
+  const Workcell& cell = board_.workcell;
+  if (cell.is_active(Input::EmergencyStop)) return ErrorCode::EmergencyStop;
+  if (cell.is_active(Input::Door) && !board_.settings.flag(setting::kDoorOptions)) return ErrorCode::CheckDoor;
+  if (cell.is_active(Input::Reset)) return ErrorCode::ResetAsserted;
+  if (homing) return std::nullopt;
+  const bool strict =
+      board_.settings.flag(setting::kHardLimits) && board_.settings.flag(setting::kHardLimits, kLimitsStrictBit);
+  if (strict && board_.limits() != 0) return ErrorCode::LimitsEngaged;
+  if (homing_is_required(board_)) return ErrorCode::HomingRequired;
+  return std::nullopt;
+}
+
+SystemCommands::Result SystemCommands::unlock() {
+  if (board_.state != MachineState::Alarm) return {};
+  if (const auto reason = lock_reason(false)) return std::unexpected(*reason);
+  board_.state = MachineState::Idle;
+  board_.alarm = 0;
+  board_.say(FeedbackText::Unlocked);
+  return {};
+}
+
+SystemCommands::Result SystemCommands::home(const ParsedCommand& command, Steps& steps) {
+  const auto& settings = board_.settings;
+  AxisMask asked = 0;
+  if (!command.key.empty()) {
+    if (is_grblhal(board_) && !settings.flag(setting::kHoming, homing_bit::kSingleAxis)) {
+      return std::unexpected(ErrorCode::HomingDisabled);
+    }
+    const auto axis = vocabulary::axis_of(command.key.front());
+    asked = axis ? static_cast<AxisMask>(vocabulary::mask_of(*axis) & board_.all_axes()) : AxisMask{0};
+  }
+  if (board_.state != MachineState::Idle && board_.state != MachineState::Alarm) {
+    return std::unexpected(ErrorCode::IdleError);
+  }
+  if (const auto reason = lock_reason(true)) return std::unexpected(*reason);
+  if (!settings.flag(setting::kHoming)) return std::unexpected(ErrorCode::HomingDisabled);
+  const bool single_axis_unknown = board_.personality.firmware == vocabulary::Firmware::Grbl;
+  if (!command.key.empty() && (asked == 0 || single_axis_unknown)) return std::unexpected(ErrorCode::InvalidStatement);
+  std::vector<AxisMask> cycles = board_.homing_cycles();
+  if (asked != 0) cycles = {asked};
+  if (cycles.empty()) {
+    return std::unexpected(is_grblhal(board_) ? ErrorCode::HomingDisabled : ErrorCode::HomingNotDefined);
+  }
+
+  board_.state = MachineState::Home;
+  board_.alarm = 0;
+  if (board_.personality.homing.announces) {
+    board_.set_accessories({});
+    if (asked == 0) board_.homed = static_cast<AxisMask>(board_.homed & ~board_.homing_axes());
+    if (!board_.reports(vocabulary::ReportBit::ReportWhenHoming)) {
+      steps.insert(steps.end(), {SayStatus{}, Freeze{.duration = kHomingAnnouncement}});
+    }
+  }
+  steps.insert(steps.end(), {HomeAxes{.cycles = {cycles.begin(), cycles.end()}}, FinishHoming{.asked = asked}, Answer{}});
+  return {};
+}
+
+SystemCommands::Result SystemCommands::jog(const ParsedCommand& command, Steps& steps) {
+  auto move = board_.interpreter.interpret_jog(command.value);
+  if (!move) return std::unexpected(move.error());
+  if (is_grblhal(board_) && board_.settings.flag(setting::kLimitJogs)) {
+    move->target_mm = board_.clipped_to_travel(move->target_mm);
+  } else if (board_.settings.flag(setting::kSoftLimits) && !board_.is_within_travel(move->target_mm)) {
+    return std::unexpected(ErrorCode::TravelExceeded);
+  }
+  steps.insert(steps.end(), {PlanJog{.move = *move}, Answer{}});
+  return {};
+}
+
+SystemCommands::Result SystemCommands::store_user_text(const ParsedCommand& command) {
+  if (command.value.size() > static_cast<std::size_t>(board_.personality.dialect().stored_line_length)) {
+    return std::unexpected(ErrorCode::InvalidStatement);
+  }
+  board_.stored.user_text = command.value;
+  board_.store_settings();
+  return {};
+}
+
+SystemCommands::Result SystemCommands::store_startup_line(const ParsedCommand& command, Steps& steps) {
+  const auto index = base::parse_int<std::size_t>(command.key);
+  if (!index || *index >= board_.stored.startup_lines.size()) return std::unexpected(ErrorCode::InvalidStatement);
+  constexpr StateSet kStoring = {MachineState::Idle, MachineState::Alarm, MachineState::Check};
+  if (!command.value.empty() && !kStoring.contains(board_.state)) return std::unexpected(ErrorCode::IdleError);
+
+  const std::string line = normalised(command.value);
+  if (line.size() > static_cast<std::size_t>(board_.personality.dialect().stored_line_length)) {
+    return std::unexpected(ErrorCode::LineTooLong);
+  }
+  // The line is carried out once, to see that it is valid (gnea/grbl system.c; grblHAL system.c).
+  const auto blocks = board_.personality.start.startup_blocks_split ? base::split(line, '|')
+                                                                    : std::vector<std::string_view>{line};
+  for (const std::string_view block : blocks) {
+    if (block.empty()) continue;
+    if (const Result added = add_block_steps(board_, block, steps); !added) return added;
+  }
+  board_.stored.startup_lines.at(*index) = line;
+  board_.store_settings();
+  return {};
+}
+
+SystemCommands::Result SystemCommands::restore(const ParsedCommand& command, Steps& steps) {
+  const std::string_view what = command.value;
+  const bool names = board_.personality.restores_network;
+  const bool everything = what == "*" || (names && base::iequals(what, "all"));
+  const bool settings = everything || what == "$" || (names && base::iequals(what, "settings"));
+  const bool offsets = everything || what == "#" || (names && base::iequals(what, "gcode"));
+  const bool driver = (is_grblhal(board_) && what == "&") || (names && (what == "@" || base::iequals(what, "wifi")));
+  if (!settings && !offsets && !driver) return std::unexpected(ErrorCode::InvalidStatement);
+
+  if (settings) board_.settings.restore_defaults();
+  if (offsets) {
+    board_.stored.offsets.clear();
+    board_.load_offsets();
+  }
+  if (everything) {
+    board_.stored.startup_lines = {};
+    board_.stored.user_text.clear();
+  }
+  board_.apply_settings();
+  board_.store_settings();
+  board_.say(FeedbackText::RestoringDefaults);
+  steps.emplace_back(Answer{});
+  if (board_.personality.restore_resets) steps.emplace_back(Restart{});
+  return {};
+}
+
+SystemCommands::Result SystemCommands::sleep(Steps& steps) {
+  if (board_.personality.sleep_needs_setting && !board_.settings.flag(setting::kSleepEnable)) {
+    return std::unexpected(ErrorCode::InvalidStatement);
+  }
+  if (board_.state != MachineState::Idle && board_.state != MachineState::Alarm) {
+    return std::unexpected(ErrorCode::IdleError);
+  }
+  steps.insert(steps.end(), {Answer{}, EnterSleep{}});
+  return {};
+}
+
+SystemCommands::Result SystemCommands::toggle(Command command) {
+  Switches& switches = board_.switches;
+  bool& flag = command == Command::BlockDelete   ? switches.block_delete
+               : command == Command::SingleBlock ? switches.single_block
+                                                 : switches.optional_stop_disabled;
+  flag = !flag;
+  board_.apply_settings();
+  board_.say(flag ? FeedbackText::Enabled : FeedbackText::Disabled);
+  return {};
+}
+
+SystemCommands::Result SystemCommands::list_codes(const ParsedCommand& command) {
+  const bool alarms = command.command == Command::ListAlarms;
+  if (!command.has_value) {
+    if (alarms) {
+      listing_.alarms();
+    } else {
+      listing_.errors();
+    }
+    return {};
+  }
+  const std::string_view kind = alarms ? "alarm" : "error";
+  const auto code = base::parse_int<int>(command.value);
+  if (code && (alarms ? listing_.one_alarm(*code) : listing_.one_error(*code))) return {};
+  std::string text = code ? "Unknown " : "Malformed ";
+  text.append(kind).append(" number: ").append(command.value);
+  board_.say(protocol::Unrecognized{.line = std::move(text)});
+  return std::unexpected(ErrorCode::SettingTextInvalid);
+}
+
+SystemCommands::Result SystemCommands::set_tool_reference() {
+  const gcode::Offsets& offsets = board_.interpreter.offsets();
+  board_.tool_reference_axes = offsets.probe_succeeded ? vocabulary::mask_of(vocabulary::Axis::Z) : AxisMask{0};
+  if (offsets.probe_succeeded) board_.tool_reference_mm = offsets.probe;
+  board_.report.tool_reference = true;
+  return {};
+}
+
+}  // namespace kerf::firmware

@@ -1,0 +1,60 @@
+#pragma once
+// The `$` commands: one handler each, which says things, changes the board, or leaves steps to do.
+
+#include <expected>
+#include <string_view>
+
+#include "firmware/board.hpp"
+#include "firmware/listing.hpp"
+#include "firmware/reporter.hpp"
+#include "firmware/step.hpp"
+
+namespace kerf::firmware {
+
+/// Executes `$` lines. The steps that it appends end in the line's answer, and a reset may follow that.
+class SystemCommands {
+ public:
+  SystemCommands(Board& board, Reporter& reporter) : board_(board), reporter_(reporter), listing_(board) {}
+
+  /// `line` without its `$`. An error leaves `steps` alone.
+  std::expected<void, ErrorCode> execute(std::string_view line, Steps& steps);
+
+ private:
+  using Result = std::expected<void, ErrorCode>;
+
+  Result dispatch(const ParsedCommand& command, Steps& steps);
+  Result dispatch_listing(const ParsedCommand& command);
+  Result describe_setting(const ParsedCommand& command);
+  Result read_setting(const ParsedCommand& command);
+  Result write_setting(const ParsedCommand& command);
+  Result check_mode(Steps& steps);
+  Result unlock();
+  Result home(const ParsedCommand& command, Steps& steps);
+  Result jog(const ParsedCommand& command, Steps& steps);
+  Result store_user_text(const ParsedCommand& command);
+  Result store_startup_line(const ParsedCommand& command, Steps& steps);
+  Result restore(const ParsedCommand& command, Steps& steps);
+  Result sleep(Steps& steps);
+  Result toggle(Command command);
+  Result list_codes(const ParsedCommand& command);
+  Result set_tool_reference();
+  /// What forbids `$X`, or homing (grblHAL system.c check_status).
+  [[nodiscard]] std::optional<ErrorCode> lock_reason(bool homing) const;
+
+  Board& board_;
+  Reporter& reporter_;
+  Listing listing_;
+};
+
+/// True while `$22` bit 2 demands homing first (grblHAL machine_limits.c limits_homing_required).
+[[nodiscard]] bool homing_is_required(const Board& board);
+
+// Named policies for Personality::parse_command.
+std::expected<ParsedCommand, ErrorCode> parse_command_grbl(const Personality& personality, std::string_view line,
+                                                           MachineState state, bool critical);
+std::expected<ParsedCommand, ErrorCode> parse_command_rabbit(const Personality& personality, std::string_view line,
+                                                             MachineState state, bool critical);
+std::expected<ParsedCommand, ErrorCode> parse_command_grblhal(const Personality& personality, std::string_view line,
+                                                              MachineState state, bool critical);
+
+}  // namespace kerf::firmware

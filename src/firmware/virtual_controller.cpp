@@ -1,0 +1,155 @@
+#include "firmware/virtual_controller.hpp"
+
+#include <algorithm>
+#include <variant>
+
+#include "common/base/overloaded.hpp"
+#include "firmware/board.hpp"
+#include "firmware/cycle.hpp"
+#include "firmware/foreground.hpp"
+#include "firmware/realtime.hpp"
+#include "firmware/receiver.hpp"
+#include "firmware/reporter.hpp"
+
+namespace kerf::firmware {
+
+/// The parts, wired together in the order in which they need each other.
+struct VirtualController::Parts {
+  Parts(const Personality& personality, StoredState stored)
+      : board(personality, std::move(stored)),
+        receiver(personality),
+        cycle(board),
+        reporter(board),
+        foreground(board, cycle, receiver, reporter),
+        realtime(board, cycle, foreground, receiver, reporter) {}
+
+  [[nodiscard]] Instant next_deadline() const {
+    return std::min(cycle.next_deadline(), foreground.next_deadline());
+  }
+
+  /// Motion, then the main loop, at one instant.
+  void live_at(Instant at) {
+    board.now = at;
+    cycle.advance();
+    foreground.look_at_switches();
+    foreground.settle();
+    is_settled = true;
+  }
+
+  void press(Input input) {
+    switch (input) {
+      case Input::FeedHold: cycle.feed_hold(); break;
+      case Input::CycleStart:
+        board.report.cycle_start_pressed = true;
+        realtime.act(static_cast<std::uint8_t>('~'));
+        break;
+      case Input::Reset: realtime.reset(); break;
+      case Input::Door: foreground.open_door(); break;
+      case Input::EmergencyStop: foreground.emergency_stop(); break;
+      default: break;
+    }
+  }
+
+  Board board;
+  Receiver receiver;
+  Cycle cycle;
+  Reporter reporter;
+  Foreground foreground;
+  Realtime realtime;
+  /// False while the main loop may still find something to do at `board.now`.
+  bool is_settled = true;
+};
+
+VirtualController::VirtualController(const Personality& personality, StoredState stored)
+    : parts_(std::make_unique<Parts>(personality, std::move(stored))) {}
+VirtualController::~VirtualController() = default;
+VirtualController::VirtualController(VirtualController&&) noexcept = default;
+VirtualController& VirtualController::operator=(VirtualController&&) noexcept = default;
+
+void VirtualController::power_on(Instant now) {
+  parts_->board.now = now;
+  parts_->foreground.power_on();
+  parts_->is_settled = false;
+}
+
+void VirtualController::on_bytes(Instant now, std::string_view bytes) {
+  if (now > parts_->board.now) advance_to(now);
+  for (const char letter : bytes) {
+    const auto byte = static_cast<std::uint8_t>(letter);
+    if (parts_->receiver.full()) parts_->foreground.run();
+    const auto fate = parts_->receiver.take(byte, parts_->foreground.keeps_realtime_characters());
+    if (fate != Receiver::Fate::Realtime) {
+      // `$39`=0 looks at the line that is being read, byte by byte.
+      if (parts_->foreground.waiting_for() == WaitingFor::Nothing && (byte == '$' || byte == '(')) {
+        parts_->foreground.run();
+      }
+      continue;
+    }
+    parts_->foreground.settle();
+    parts_->realtime.act(byte);
+    parts_->foreground.run();
+  }
+  parts_->foreground.run();
+  parts_->is_settled = false;
+}
+
+void VirtualController::submit(Instant now, const WorkcellEvent& event) {
+  if (now > parts_->board.now) advance_to(now);
+  parts_->foreground.settle();
+  parts_->board.workcell.apply(event);
+  parts_->foreground.look_at_switches();
+  if (const auto* change = std::get_if<InputChanged>(&event)) {
+    if (change->active) parts_->press(change->input);
+    if (change->input == Input::Door && !change->active) parts_->cycle.close_door();
+  }
+  parts_->foreground.run();
+  parts_->is_settled = false;
+}
+
+void VirtualController::advance_to(Instant now) {
+  if (!parts_->is_settled) parts_->live_at(parts_->board.now);
+  for (;;) {
+    const Instant next = parts_->next_deadline();
+    if (next > now || next == kNever) break;
+    parts_->live_at(std::max(next, parts_->board.now));
+  }
+  if (now > parts_->board.now) parts_->live_at(now);
+}
+
+Instant VirtualController::next_deadline() const {
+  return parts_->is_settled ? parts_->next_deadline() : parts_->board.now;
+}
+
+std::string VirtualController::take_outbox() {
+  return parts_->board.outbox.take();
+}
+
+std::size_t VirtualController::receive_room() const {
+  return parts_->receiver.free();
+}
+
+const StoredState& VirtualController::stored() const {
+  return parts_->board.stored;
+}
+
+unsigned VirtualController::stored_revision() const {
+  return parts_->board.stored_revision;
+}
+
+const std::vector<std::string>& VirtualController::rejected_settings() const {
+  return parts_->board.rejected_settings;
+}
+
+const Personality& VirtualController::personality() const {
+  return parts_->board.personality;
+}
+
+vocabulary::MachineState VirtualController::state() const {
+  return parts_->board.state;
+}
+
+vocabulary::AxisSteps VirtualController::position_steps() const {
+  return parts_->board.steps();
+}
+
+}  // namespace kerf::firmware

@@ -1,0 +1,69 @@
+#include "firmware/workcell.hpp"
+
+#include <cmath>
+
+#include "common/base/overloaded.hpp"
+
+namespace kerf::firmware {
+
+using vocabulary::AxisMask;
+using vocabulary::AxisSteps;
+
+namespace {
+
+constexpr std::size_t kZ = 2;
+
+bool has(AxisMask mask, std::size_t axis) {
+  return ((mask >> axis) & 1U) != 0;
+}
+
+}  // namespace
+
+void Workcell::apply(const WorkcellEvent& event) {
+  std::visit(base::Overloaded{
+                 [&](const InputChanged& change) { inputs_.at(static_cast<std::size_t>(change.input)) = change.active; },
+                 [&](const LimitHeld& limit) {
+                   const AxisMask bit = vocabulary::mask_of(limit.axis);
+                   held_limits_ = static_cast<AxisMask>(limit.active ? held_limits_ | bit : held_limits_ & ~bit);
+                 },
+                 [&](const HomingSwitchMoved& moved) {
+                   homing_switches_.at(vocabulary::index_of(moved.axis)) = {.at_travel_end = false,
+                                                                             .distance_mm = moved.distance_mm};
+                 },
+                 [&](const ProbeSurfaceMoved& moved) { surface_mm_ = moved.z_mm; },
+             },
+             event);
+}
+
+std::optional<std::int32_t> Workcell::homing_switch_step(std::size_t axis, const Geometry& geometry) const {
+  const HomingSwitch& homing_switch = homing_switches_.at(axis);
+  const auto distance_mm =
+      homing_switch.at_travel_end ? std::optional<double>{geometry.travel_mm.at(axis)} : homing_switch.distance_mm;
+  if (axis >= geometry.axes || !distance_mm || (homing_switch.at_travel_end && *distance_mm <= 0)) return std::nullopt;
+  const double steps = *distance_mm * static_cast<double>(geometry.steps_per_mm.at(axis));
+  return static_cast<std::int32_t>(has(geometry.homing_negative, axis) ? -std::ceil(steps) : std::ceil(steps));
+}
+
+AxisMask Workcell::limits_at(const AxisSteps& physical, const Geometry& geometry) const {
+  AxisMask active = held_limits_;
+  for (std::size_t axis = 0; axis < geometry.axes; ++axis) {
+    const auto step = homing_switch_step(axis, geometry);
+    if (!step) continue;
+    const bool closed = has(geometry.homing_negative, axis) ? physical.at(axis) <= *step : physical.at(axis) >= *step;
+    if (closed) active = static_cast<AxisMask>(active | (1U << axis));
+  }
+  return active;
+}
+
+std::optional<std::int32_t> Workcell::surface_step(const Geometry& geometry) const {
+  if (!surface_mm_ || geometry.axes <= kZ) return std::nullopt;
+  return static_cast<std::int32_t>(std::floor(*surface_mm_ * static_cast<double>(geometry.steps_per_mm.at(kZ))));
+}
+
+bool Workcell::probe_at(const AxisSteps& physical, const Geometry& geometry) const {
+  if (is_active(Input::Probe)) return true;
+  const auto step = surface_step(geometry);
+  return step && physical.at(kZ) <= *step;
+}
+
+}  // namespace kerf::firmware
