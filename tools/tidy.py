@@ -7,6 +7,7 @@ Prints `file:line: rule: what to do` for every violation below ROOT (the tree th
 ends with status 1 if there is any. It reads files only: no compiler, no git, nothing but Python's standard library.
 """
 
+import posixpath
 import re
 import sys
 from pathlib import Path
@@ -168,10 +169,11 @@ def check_includes(file: SourceFile, known: set[str]) -> Iterator[Finding]:
 
 
 def advice_on_own(file: SourceFile, target: str, known: set[str]) -> str | None:
+    if not file.path.startswith("src/"):
+        beside = posixpath.normpath(posixpath.join(file.folder, target))
+        return None if {"src/" + target, beside} & known else f"`{target}` is neither below src nor beside this file"
     if "src/" + target not in known:
         return f"`{target}` is not below src: write the path from there"
-    if not file.path.startswith("src/"):
-        return None
     here, there = module_of(file.path[4:]), module_of(target)
     if here is None or there is None or here == there or there in MAY_INCLUDE[here]:
         return None

@@ -72,6 +72,10 @@ class TidyTest(unittest.TestCase):
         self.include("src/sender/streaming/x.cpp", '"common/motion/planner.hpp"', "`sender/streaming` may not")
         self.include("src/simulation/x.cpp", '"io/transport.hpp"', "`simulation` may not include `io`")
         self.include("src/firmware/x.cpp", '"receiver.hpp"', "write the path from there")
+        self.include("tests/scenarios/x.cpp", '"absent.hpp"', "neither below src nor beside")
+        self.accepts("tests/scenarios/scenario.hpp", GOOD_HEADER)
+        self.accepts("tests/scenarios/x.cpp", '#include "firmware/receiver.hpp"\n#include "scenario.hpp"\n')
+        self.accepts("bench/x.cpp", '#include "../tests/scenarios/scenario.hpp"\n')
         self.accepts("src/apps/x.cpp", '#include "io/transport.hpp"\n#include "firmware/receiver.hpp"\n')
 
     def test_the_two_sides_meet_only_as_bytes(self) -> None:
