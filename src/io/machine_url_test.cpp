@@ -58,7 +58,7 @@ TEST(MachineUrl, EveryFaultIsNamed) {
   EXPECT_EQ(fault_of("fe80::1:23"), UrlFault::NotAnAddress);
   EXPECT_EQ(fault_of("[::1"), UrlFault::NotAnAddress);
   EXPECT_EQ(fault_of("serial://"), UrlFault::NoPath);
-  EXPECT_EQ(fault_of("pty://tmp/x"), UrlFault::RelativePath);
+  EXPECT_EQ(fault_of("pty://kerf-grbl"), UrlFault::RelativePath);
   EXPECT_EQ(fault_of("/dev/ttyUSB0?baud=fast"), UrlFault::BadBaud);
   EXPECT_EQ(fault_of("/dev/ttyUSB0?baud=1"), UrlFault::BadBaud);
   EXPECT_EQ(fault_of("/dev/ttyUSB0?parity=even"), UrlFault::UnknownOption);

@@ -74,16 +74,11 @@ std::optional<bool> position_of(std::string_view word) {
   return std::nullopt;
 }
 
-/// "limit X on", "door open", "home X at 12.5"
+/// "limit X on", "door open"
 std::optional<WorkcellEvent> switch_of(std::string_view text) {
   const auto words = words_of(text);
   if (words.size() < 2) return std::nullopt;
   const auto axis = words[1].size() == 1 ? vocabulary::axis_of(words[1].front()) : std::nullopt;
-  if (words[0] == "home" && words.size() == 4 && axis && words[2] == "at") {
-    const auto distance = base::parse_decimal(words[3]);
-    if (!distance) return std::nullopt;
-    return firmware::HomingSwitchMoved{.axis = *axis, .distance_mm = *distance};
-  }
   const auto active = position_of(words.back());
   if (!active) return std::nullopt;
   if (words[0] == "limit" && words.size() == 3 && axis) return firmware::LimitHeld{.axis = *axis, .active = *active};
@@ -213,8 +208,7 @@ std::string_view explain(TalkFault fault) {
       return "nobody knows who speaks: add '% personality grbl', 'rabbit' or 'grblhal'";
     case TalkFault::BadEscape: return "an escape is one of \\r \\n \\t \\\\ and \\xNN";
     case TalkFault::BadTime: return "time is written like '@ +1s' or '@ +200ms'";
-    case TalkFault::BadSwitch:
-      return "this is no switch: write for example '@ limit X on', '@ door open', '@ home X at 12.5'";
+    case TalkFault::BadSwitch: return "this is no switch: write for example '@ limit X on' or '@ door open'";
   }
   return {};
 }

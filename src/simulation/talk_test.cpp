@@ -50,7 +50,6 @@ TEST(Talk, MarksBecomeSteps) {
       "@ +200ms\n"
       "@ until <Idle*\n"
       "@ limit X on\n"
-      "@ home Y at 12.5\n"
       "@ door close\n");
   EXPECT_EQ(talk.settings, (std::vector<std::string>{"$22=1", "$24=100"}));
   EXPECT_EQ(action_of<SendBytes>(talk, 0).bytes, "G21\n");
@@ -65,8 +64,7 @@ TEST(Talk, MarksBecomeSteps) {
   EXPECT_EQ(action_of<LetTimePass>(talk, 9).time, Duration(200ms));
   EXPECT_EQ(action_of<WaitUntil>(talk, 10).pattern.text(), "<Idle*");
   EXPECT_TRUE(std::get<firmware::LimitHeld>(action_of<MoveSwitch>(talk, 11).event).active);
-  EXPECT_EQ(std::get<firmware::HomingSwitchMoved>(action_of<MoveSwitch>(talk, 12).event).distance_mm, 12.5);
-  EXPECT_EQ(std::get<firmware::InputChanged>(action_of<MoveSwitch>(talk, 13).event).input, firmware::Input::Door);
+  EXPECT_EQ(std::get<firmware::InputChanged>(action_of<MoveSwitch>(talk, 12).event).input, firmware::Input::Door);
   EXPECT_EQ(talk.steps[0].line, 5U);
   EXPECT_TRUE(talk.moves_switches());
 }

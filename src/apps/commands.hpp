@@ -1,0 +1,59 @@
+#pragma once
+// The sub-commands of `kerf`: what main() found in the command line, and one function each. Every function prints for
+// people (or JSON where asked), says errors in one sentence on standard error, and returns how the program ends.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/exit_status.hpp"
+
+namespace kerf::apps {
+
+inline constexpr const char* kDefaultMachine = "virtual:grblhal";
+
+struct RunOptions {
+  std::string file;
+  std::string machine = kDefaultMachine;
+  bool json = false;
+};
+[[nodiscard]] ExitStatus run(const RunOptions& options);
+
+struct VirtualOptions {
+  std::string personality = "grblhal";
+  std::string listen;
+  std::string pty;
+  std::string speed = "1";
+  std::string settings_file;
+  std::string state_file;
+};
+[[nodiscard]] ExitStatus serve_virtual(const VirtualOptions& options);
+
+struct DescribeOptions {
+  std::string machine = kDefaultMachine;
+  bool json = false;
+};
+[[nodiscard]] ExitStatus describe_machine(const DescribeOptions& options);
+
+struct ConsoleOptions {
+  std::string machine = kDefaultMachine;
+};
+[[nodiscard]] ExitStatus console(const ConsoleOptions& options);
+
+struct PortsOptions {
+  bool json = false;
+};
+[[nodiscard]] ExitStatus list_ports(const PortsOptions& options);
+
+struct VerifyOptions {
+  std::vector<std::string> files;
+  std::string machine;      ///< empty: the virtual controller of each talk's personality, in virtual time
+  std::string personality;  ///< empty: all of them
+  bool verbose = false;
+};
+[[nodiscard]] ExitStatus verify(const VerifyOptions& options);
+
+/// Says what went wrong on standard error, as one sentence behind the program's name.
+void complain(const std::string& sentence);
+
+}  // namespace kerf::apps

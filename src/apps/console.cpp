@@ -1,0 +1,212 @@
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "apps/commands.hpp"
+#include "apps/line_editor.hpp"
+#include "apps/progress_text.hpp"
+#include "apps/terminal.hpp"
+#include "common/base/text.hpp"
+#include "io/session_host.hpp"
+
+namespace kerf::apps {
+namespace {
+
+using namespace std::chrono_literals;
+using vocabulary::MachineState;
+
+/// After the last line of a pipe the console waits this long for something more to come.
+constexpr Duration kLastWords = 300ms;
+
+/// $XDG_STATE_HOME/kerf/console_history, or the usual place; empty without a home.
+std::string history_file() {
+  namespace fs = std::filesystem;
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string(value == nullptr ? "" : value);
+  };
+  fs::path folder = variable("XDG_STATE_HOME");
+  if (folder.empty()) {
+    if (variable("HOME").empty()) return {};
+    folder = fs::path(variable("HOME")) / ".local" / "state";
+  }
+  std::error_code fault;
+  fs::create_directories(folder / "kerf", fault);
+  return fault ? std::string() : (folder / "kerf" / "console_history").string();
+}
+
+class Console {
+ public:
+  Console(io::EventLoop& loop, io::MachineUrl url) : loop_(loop), url_(std::move(url)), last_words_(loop) {}
+
+  ExitStatus run() {
+    constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
+    const io::SignalWatch signals(loop_, kSignals, [this](int signal) { on_signal(signal); });
+    session::SessionOptions options;
+    options.reset_policy = session::ResetPolicy::WhenSilent;
+    host_ = std::make_unique<io::SessionHost>(
+        loop_, url_, options,
+        io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
+                                   .lost = [this](const io::TransportError& error) { on_lost(error); }});
+    loop_.run();
+    return status_.value_or(ExitStatus::Done);
+  }
+
+ private:
+  void on_event(const session::Event& event) {
+    if (status_) return;
+    std::visit([this](const auto& alternative) { on(alternative); }, event);
+  }
+
+  void on(const session::ControllerFound& found) {
+    if (input_) return;
+    fmt::print("{}\n", found.sentence);
+    begin();
+  }
+  void on(const session::ControllerBusy& busy) {
+    if (!input_) fmt::print("{} You may watch and use the realtime keys.\n", busy.sentence);
+    begin();
+  }
+  void on(const session::HandshakeFailed& failed) {
+    // on_lost() says better what became of the link.
+    if (failed.failure != session::HandshakeFailure::LinkLost) fail(failed.sentence, ExitStatus::NoConnection);
+  }
+  void on(const session::CommandRefused& refused) { show(refused.sentence); }
+  void on(const session::LinkSilent& silent) {
+    show(fmt::format("The machine has not answered for {:.0f} s: check cable and power.", silent.silent_for_s));
+  }
+  void on(const session::LineReceived& line) {
+    if (!input_ || (line.answers && line.answers->purpose != streaming::Purpose::Operator)) return;
+    std::visit([&](const auto& message) { show_message(message, line.raw); }, line.message);
+    if (has_ended_) wait_for_last_words();
+  }
+  void on(const session::LineRefused& refused) {
+    if (refused.purpose == streaming::Purpose::Operator) show("    " + refused.refusal.meaning);
+  }
+  void on(const session::AlarmRaised& alarm) { show(fmt::format("    {}. {}", alarm.title, alarm.text)); }
+  template <typename Other>
+  void on(const Other&) {}
+
+  template <typename Message>
+  void show_message(const Message&, const std::string& raw) {
+    show(base::escape(raw));
+  }
+  /// The session asks for reports all the time; only those that were asked for here are shown.
+  void show_message(const protocol::StatusReport&, const std::string& raw) {
+    if (reports_asked_ == 0) return;
+    --reports_asked_;
+    show(base::escape(raw));
+    const machine::Snapshot& snapshot = host_->session().snapshot();
+    std::string meaning = state_text(snapshot);
+    if (const std::string where = position_text(snapshot); !where.empty()) meaning += " at " + where;
+    if (snapshot.feed_mm_per_min) meaning += fmt::format(", feed {:.0f} mm/min", *snapshot.feed_mm_per_min);
+    show("    " + meaning);
+  }
+
+  void begin() {
+    if (input_) return;
+    const InputCallbacks callbacks{.line = [this](std::string_view line) { send(line); },
+                                   .realtime_key = [this](char key) { press(key); },
+                                   .ended = [this] { end(); }};
+    if (is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO)) {
+      fmt::print("At the start of a line ? ! ~ and Ctrl-X act at once. Ctrl-D leaves.\n");
+      input_ = make_line_editor(loop_, "> ", history_file(), callbacks);
+    } else {
+      input_ = make_plain_reader(loop_, callbacks);
+    }
+  }
+
+  void send(std::string_view line) {
+    host_->submit(session::SendLine{std::string(line)});
+    if (has_ended_) wait_for_last_words();
+  }
+
+  void press(char key) {
+    if (key == '?') ++reports_asked_;
+    if (key == 0x18) show("Reset.");
+    host_->submit(session::SendRealtime{static_cast<std::uint8_t>(key)});
+  }
+
+  /// The input is over. A pipe's answers are still to come; at a terminal somebody pressed Ctrl-D.
+  void end() {
+    if (is_terminal(STDIN_FILENO)) return finish(ExitStatus::Done);
+    has_ended_ = true;
+    wait_for_last_words();
+  }
+
+  void wait_for_last_words() {
+    last_words_.arm(loop_.now() + kLastWords, [this] {
+      if (host_->session().bytes_in_flight() > 0 || reports_asked_ > 0) return wait_for_last_words();
+      finish(ExitStatus::Done);
+    });
+  }
+
+  void on_signal(int signal) {
+    const MachineState state = host_->session().snapshot().state;
+    const bool moves = state == MachineState::Run || state == MachineState::Jog || state == MachineState::Home;
+    if (signal != SIGINT || !input_ || !moves) {
+      if (signal == SIGINT && input_ && input_->clear_line()) return;
+      return finish(input_ ? ExitStatus::Done : ExitStatus::Interrupted);
+    }
+    show("Holding. ~ goes on, Ctrl-X resets.");
+    host_->submit(session::SendRealtime{'!'});
+  }
+
+  void on_lost(const io::TransportError& error) {
+    fail(io::explain(url_, error), input_ ? ExitStatus::Interrupted : ExitStatus::NoConnection);
+  }
+
+  void show(const std::string& line) {
+    if (input_) {
+      input_->print(line);
+    } else {
+      fmt::print("{}\n", line);
+    }
+  }
+
+  void fail(const std::string& sentence, ExitStatus status) {
+    if (status_) return;
+    input_.reset();
+    complain(sentence);
+    finish(status);
+  }
+
+  void finish(ExitStatus status) {
+    if (!status_) status_ = status;
+    loop_.stop();
+  }
+
+  io::EventLoop& loop_;
+  const io::MachineUrl url_;
+  io::Timer last_words_;
+  std::optional<ExitStatus> status_;
+  int reports_asked_ = 0;
+  bool has_ended_ = false;
+  std::unique_ptr<io::SessionHost> host_;
+  std::unique_ptr<InputReader> input_;
+};
+
+}  // namespace
+
+ExitStatus console(const ConsoleOptions& options) {
+  const auto url = io::parse_machine_url(options.machine);
+  if (!url) {
+    complain(io::explain(url.error()));
+    return ExitStatus::Usage;
+  }
+  io::EventLoop loop;
+  Console console(loop, *url);
+  return console.run();
+}
+
+}  // namespace kerf::apps

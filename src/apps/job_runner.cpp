@@ -1,0 +1,216 @@
+#include "apps/job_runner.hpp"
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace kerf::apps {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// The clock of the progress display runs on between two reports.
+constexpr Duration kRedraw = 250ms;
+
+ExitStatus status_of(job::JobPhase phase) {
+  switch (phase) {
+    case job::JobPhase::Finished: return ExitStatus::Done;
+    case job::JobPhase::Refused: return ExitStatus::Refused;
+    case job::JobPhase::Alarmed: return ExitStatus::Alarm;
+    default: return ExitStatus::Interrupted;
+  }
+}
+
+/// How it ends when the job could not even begin.
+ExitStatus status_of(session::Refused reason) {
+  switch (reason) {
+    case session::Refused::LineTooLong:
+    case session::Refused::RealtimeInLine:
+    case session::Refused::NeverSent: return ExitStatus::Usage;
+    case session::Refused::MachineInAlarm: return ExitStatus::Alarm;
+    case session::Refused::NotConnected:
+    case session::Refused::NotIdentified: return ExitStatus::NoConnection;
+    default: return ExitStatus::Interrupted;
+  }
+}
+
+std::string_view held_sentence(job::HoldCause cause) {
+  switch (cause) {
+    case job::HoldCause::Door: return "The safety door is open: close it first.";
+    case job::HoldCause::ToolChange: return "The machine waits for a tool change.";
+    default: return "The machine stands still.";
+  }
+}
+
+}  // namespace
+
+JobRunner::JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<const job::Program> program,
+                     JobView& view, bool can_ask)
+    : loop_(loop), url_(std::move(url)), program_(std::move(program)), view_(view), can_ask_(can_ask), redraw_(loop) {}
+
+ExitStatus JobRunner::run() {
+  constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+  signals_ = std::make_unique<io::SignalWatch>(loop_, kSignals, [this](int signal) { on_signal(signal); });
+  if (can_ask_) keys_ = std::make_unique<KeyReader>(loop_, [this](char key) { on_key(key); });
+  host_ = std::make_unique<io::SessionHost>(
+      loop_, url_, session::SessionOptions{},
+      io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
+                                 .lost = [this](const io::TransportError& error) { on_lost(error); }});
+  loop_.run();
+  return status_.value_or(ExitStatus::Interrupted);
+}
+
+void JobRunner::on_event(const session::Event& event) {
+  if (status_) return;
+  std::visit([this](const auto& alternative) { on(alternative); }, event);
+}
+
+void JobRunner::on(const session::ControllerFound& found) {
+  if (is_started_) return;
+  view_.found(found.sentence, host_->session().capabilities());
+  host_->submit(session::StartJob{program_});
+}
+
+void JobRunner::on(const session::ControllerReset& reset) {
+  if (!reset.reason.empty()) view_.noted(reset.reason);
+}
+
+void JobRunner::on(const session::ControllerBusy& busy) {
+  view_.noted(busy.sentence);
+}
+
+void JobRunner::on(const session::HandshakeFailed& failed) {
+  fail(failed.sentence, ExitStatus::NoConnection);
+}
+
+void JobRunner::on(const session::LineReceived& line) {
+  const auto* feedback = std::get_if<protocol::Feedback>(&line.message);
+  if (is_started_ && feedback != nullptr && !feedback->text.empty()) view_.machine_said(feedback->text);
+}
+
+void JobRunner::on(const session::AlarmRaised& alarm) {
+  view_.alarm_raised(alarm);
+}
+
+void JobRunner::on(const session::JobStarted&) {
+  is_started_ = true;
+  if (const auto& job = host_->session().job()) view_.started(*job);
+  if (wish_ != Wish::Cut) host_->submit(session::HoldJob{});
+}
+
+void JobRunner::on(const session::JobProgressed& progressed) {
+  ask_if_held(progressed.job);
+  view_.progressed(progressed.job, host_->session().snapshot());
+  redraw_.arm(loop_.now() + kRedraw, [this] {
+    if (const auto& job = host_->session().job(); job && !status_) on(session::JobProgressed{*job});
+  });
+}
+
+void JobRunner::on(const session::JobEnded& ended) {
+  end_job(ended.job);
+}
+
+void JobRunner::on(const session::CommandRefused& refused) {
+  if (is_started_) {
+    view_.noted(refused.sentence);
+  } else {
+    fail(refused.sentence, status_of(refused.reason));
+  }
+}
+
+void JobRunner::on(const session::LinkSilent& silent) {
+  view_.noted(fmt::format("The machine has not answered for {:.0f} s: check cable and power.", silent.silent_for_s));
+}
+
+void JobRunner::on(const session::LinkAnswering&) {
+  view_.noted("The machine answers again.");
+}
+
+void JobRunner::on_lost(const io::TransportError& error) {
+  if (status_) return;
+  const std::string sentence = io::explain(url_, error);
+  if (is_started_) return fail(sentence, ExitStatus::Interrupted);
+  fail(sentence, ExitStatus::NoConnection);
+}
+
+void JobRunner::on_signal(int signal) {
+  if (signal == SIGINT) return interrupt();
+  wish_stop();  // nobody is there any more to be asked
+}
+
+void JobRunner::on_key(char key) {
+  if (!is_started_) return;
+  if ((key == ' ' || key == '!') && wish_ == Wish::Cut && !is_asking_) return interrupt();
+  if (!is_asking_) return;
+  if (key == 'c' || key == 'C' || key == '~') {
+    is_asking_ = false;
+    wish_ = Wish::Cut;
+    view_.noted("Going on.");
+    host_->submit(session::ResumeJob{});
+  } else if (key == 's' || key == 'S') {
+    wish_stop();
+  }
+}
+
+void JobRunner::interrupt() {
+  if (!is_started_) return fail("Interrupted before the job began: no line of it was sent.", ExitStatus::Interrupted);
+  if (wish_ == Wish::Cut && !is_asking_) {
+    wish_ = Wish::Hold;
+    view_.noted(can_ask_ ? "Holding. Ctrl-C again stops the job."
+                         : "Holding. There is no terminal to ask on: interrupt once more to stop the job.");
+    host_->submit(session::HoldJob{});
+    return;
+  }
+  wish_stop();
+}
+
+void JobRunner::wish_stop() {
+  if (!is_started_) return fail("Interrupted before the job began: no line of it was sent.", ExitStatus::Interrupted);
+  is_asking_ = false;
+  if (wish_ == Wish::Stop || wish_ == Wish::Abort) {
+    wish_ = Wish::Abort;
+    view_.noted("Resetting the controller now.");
+    host_->submit(session::AbortJob{});
+    return;
+  }
+  wish_ = Wish::Stop;
+  view_.noted("Stopping: hold, wait until the machine stands still, then reset.");
+  host_->submit(session::StopJob{});
+}
+
+void JobRunner::ask_if_held(const job::JobState& job) {
+  const bool was_holding = is_holding_;
+  is_holding_ = job.phase == job::JobPhase::Holding || job.phase == job::JobPhase::Held;
+  if (was_holding && job.phase == job::JobPhase::Running) {
+    is_asking_ = false;
+    if (wish_ == Wish::Hold) wish_ = Wish::Cut;
+  }
+  if (job.phase != job::JobPhase::Held) return;
+  if (is_asking_ || wish_ == Wish::Stop || wish_ == Wish::Abort) return;
+  is_asking_ = true;
+  const std::string where = fmt::format("Held at line {}. {}", job.progress.file_line, held_sentence(job.hold_cause));
+  view_.asked(can_ask_ ? where + " [c]ontinue or [s]top?" : where + " Interrupt (SIGINT) to stop the job.");
+}
+
+void JobRunner::end_job(const job::JobState& job) {
+  const ExitStatus status = status_of(job.phase);
+  view_.ended(job, host_->session().snapshot(), status);
+  finish(status);
+}
+
+void JobRunner::fail(std::string_view sentence, ExitStatus status) {
+  if (status_) return;
+  view_.failed(sentence, status);
+  finish(status);
+}
+
+void JobRunner::finish(ExitStatus status) {
+  status_ = status;
+  redraw_.disarm();
+  loop_.stop();
+}
+
+}  // namespace kerf::apps

@@ -1,0 +1,70 @@
+#pragma once
+// One job from opening the link to its end, and what the operator does meanwhile. Loop's thread only.
+
+#include <memory>
+#include <optional>
+
+#include "apps/exit_status.hpp"
+#include "apps/job_view.hpp"
+#include "apps/terminal.hpp"
+#include "io/event_loop.hpp"
+#include "io/session_host.hpp"
+
+namespace kerf::apps {
+
+class JobRunner {
+ public:
+  /// `can_ask`: there is a terminal whose keys answer questions.
+  JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<const job::Program> program, JobView& view,
+            bool can_ask);
+
+  /// Runs the event loop until the job has ended.
+  [[nodiscard]] ExitStatus run();
+
+ private:
+  /// What the operator wants beyond cutting. Each Ctrl-C goes one further.
+  enum class Wish { Cut, Hold, Stop, Abort };
+
+  void on_event(const session::Event& event);
+  void on_lost(const io::TransportError& error);
+  void on_signal(int signal);
+  void on_key(char key);
+  void interrupt();
+  void wish_stop();
+  void ask_if_held(const job::JobState& job);
+  void end_job(const job::JobState& job);
+  void fail(std::string_view sentence, ExitStatus status);
+  void finish(ExitStatus status);
+
+  void on(const session::ControllerFound& found);
+  void on(const session::ControllerReset& reset);
+  void on(const session::ControllerBusy& busy);
+  void on(const session::HandshakeFailed& failed);
+  void on(const session::LineReceived& line);
+  void on(const session::AlarmRaised& alarm);
+  void on(const session::JobStarted& started);
+  void on(const session::JobProgressed& progressed);
+  void on(const session::JobEnded& ended);
+  void on(const session::CommandRefused& refused);
+  void on(const session::LinkSilent& silent);
+  void on(const session::LinkAnswering& answering);
+  template <typename Other>
+  void on(const Other&) {}
+
+  io::EventLoop& loop_;
+  const io::MachineUrl url_;
+  std::shared_ptr<const job::Program> program_;
+  JobView& view_;
+  const bool can_ask_;
+  std::optional<ExitStatus> status_;
+  Wish wish_ = Wish::Cut;
+  bool is_asking_ = false;
+  bool is_holding_ = false;
+  bool is_started_ = false;
+  io::Timer redraw_;
+  std::unique_ptr<KeyReader> keys_;
+  std::unique_ptr<io::SignalWatch> signals_;
+  std::unique_ptr<io::SessionHost> host_;
+};
+
+}  // namespace kerf::apps

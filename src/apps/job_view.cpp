@@ -1,0 +1,265 @@
+#include "apps/job_view.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "apps/commands.hpp"
+#include "apps/progress_text.hpp"
+#include "apps/terminal.hpp"
+#include "io/json.hpp"
+
+namespace kerf::apps {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+/// True at most once in `period`.
+class Pace {
+ public:
+  explicit Pace(SteadyClock::duration period) : period_(period) {}
+  bool is_due() {
+    const auto now = SteadyClock::now();
+    if (now < next_) return false;
+    next_ = now + period_;
+    return true;
+  }
+
+ private:
+  SteadyClock::duration period_;
+  SteadyClock::time_point next_{};
+};
+
+std::string alarm_sentence(const session::AlarmRaised& alarm) {
+  return fmt::format("ALARM {}: {}{}{}", alarm.code, alarm.title, alarm.title.empty() || alarm.text.empty() ? "" : ". ",
+                     alarm.text);
+}
+
+std::string started_sentence(const job::JobState& job) {
+  return fmt::format("Cutting {}, {} lines.", job.program, job.progress.lines_total);
+}
+
+class TerminalView final : public JobView {
+ public:
+  ~TerminalView() override { erase(); }
+
+  void found(std::string_view sentence, const machine::Capabilities&) override { line(sentence); }
+  void noted(std::string_view sentence) override { line(sentence); }
+  void machine_said(std::string_view text) override { line(fmt::format("The machine says: {}", text)); }
+  void started(const job::JobState& job) override {
+    line(started_sentence(job) + " Ctrl-C or Space holds the machine.");
+  }
+
+  void progressed(const job::JobState& job, const machine::Snapshot& snapshot) override {
+    if (!pace_.is_due()) return;
+    bar_ = progress_bar(job, snapshot, terminal_columns(), utf8_);
+    draw();
+  }
+
+  void alarm_raised(const session::AlarmRaised& alarm) override { line(alarm_sentence(alarm)); }
+  void asked(std::string_view question) override { line(question); }
+
+  void ended(const job::JobState& job, const machine::Snapshot& snapshot, ExitStatus status) override {
+    if (status == ExitStatus::Done) {
+      bar_ = progress_bar(job, snapshot, terminal_columns(), utf8_);
+      draw();
+      fmt::print("\n");
+      drawn_ = false;
+    }
+    finish(summary_of(job, snapshot), status);
+  }
+
+  void failed(std::string_view sentence, ExitStatus status) override { finish(std::string(sentence), status); }
+
+ private:
+  void finish(const std::string& text, ExitStatus status) {
+    erase();
+    if (status == ExitStatus::Done) {
+      fmt::print("{}\n", text);
+    } else {
+      complain(text);
+    }
+  }
+
+  void line(std::string_view text) {
+    erase();
+    fmt::print("{}\n", text);
+    draw();
+  }
+
+  void draw() {
+    if (bar_.empty()) return;
+    fmt::print("\r{}\x1b[K", bar_);
+    drawn_ = true;
+    std::fflush(stdout);
+  }
+
+  void erase() {
+    if (drawn_) fmt::print("\r\x1b[K");
+    drawn_ = false;
+    std::fflush(stdout);
+  }
+
+  Pace pace_{100ms};
+  const bool utf8_ = shows_utf8();
+  std::string bar_;
+  bool drawn_ = false;
+};
+
+class LineView final : public JobView {
+ public:
+  void found(std::string_view sentence, const machine::Capabilities&) override { line(sentence); }
+  void noted(std::string_view sentence) override { line(sentence); }
+  void machine_said(std::string_view text) override { line(fmt::format("The machine says: {}", text)); }
+  void started(const job::JobState& job) override { line(started_sentence(job)); }
+
+  void progressed(const job::JobState& job, const machine::Snapshot& snapshot) override {
+    const int tenth = static_cast<int>(job.progress.percent / 10);
+    if (tenth == shown_tenth_ && !pace_.is_due()) return;
+    if (tenth != shown_tenth_) (void)pace_.is_due();
+    shown_tenth_ = tenth;
+    line(progress_line(job, snapshot));
+  }
+
+  void alarm_raised(const session::AlarmRaised& alarm) override { line(alarm_sentence(alarm)); }
+  void asked(std::string_view question) override { line(question); }
+
+  void ended(const job::JobState& job, const machine::Snapshot& snapshot, ExitStatus status) override {
+    if (status == ExitStatus::Done) line(progress_line(job, snapshot));
+    failed(summary_of(job, snapshot), status);
+  }
+
+  void failed(std::string_view sentence, ExitStatus status) override {
+    if (status == ExitStatus::Done) {
+      line(sentence);
+    } else {
+      complain(std::string(sentence));
+    }
+  }
+
+ private:
+  static void line(std::string_view text) {
+    fmt::print("{}\n", text);
+    std::fflush(stdout);
+  }
+
+  Pace pace_{2s};
+  int shown_tenth_ = -1;
+};
+
+class JsonView final : public JobView {
+ public:
+  void found(std::string_view sentence, const machine::Capabilities& capabilities) override {
+    emit({{"event", "found"},
+          {"sentence", sentence},
+          {"firmware", capabilities.firmware},
+          {"version", capabilities.version}});
+  }
+  void noted(std::string_view sentence) override { emit({{"event", "note"}, {"sentence", sentence}}); }
+  void machine_said(std::string_view text) override { emit({{"event", "message"}, {"text", text}}); }
+  void started(const job::JobState& job) override {
+    emit({{"event", "started"}, {"program", job.program}, {"lines", job.progress.lines_total}});
+  }
+
+  void progressed(const job::JobState& job, const machine::Snapshot& snapshot) override {
+    if (job.phase == phase_ && !pace_.is_due()) return;
+    phase_ = job.phase;
+    emit(progress_of(job, snapshot));
+  }
+
+  void alarm_raised(const session::AlarmRaised& alarm) override {
+    emit({{"event", "alarm"}, {"code", alarm.code}, {"title", alarm.title}, {"text", alarm.text}});
+  }
+  void asked(std::string_view question) override { noted(question); }
+
+  void ended(const job::JobState& job, const machine::Snapshot& snapshot, ExitStatus status) override {
+    emit(progress_of(job, snapshot));
+    io::Json json{{"event", "ended"},
+                  {"outcome", io::to_json(job.phase)},
+                  {"exit_status", static_cast<int>(status)},
+                  {"sentence", summary_of(job, snapshot)}};
+    if (job.refusal) json["refusal"] = io::to_json(*job.refusal);
+    if (job.alarm_code) json["alarm_code"] = *job.alarm_code;
+    json["aftermath"] = io::to_json(job.aftermath);
+    json["position_suspect"] = job.position_suspect;
+    emit(json);
+  }
+
+  void failed(std::string_view sentence, ExitStatus status) override {
+    emit({{"event", "failed"}, {"exit_status", static_cast<int>(status)}, {"sentence", sentence}});
+    if (status != ExitStatus::Done) complain(std::string(sentence));
+  }
+
+ private:
+  static io::Json progress_of(const job::JobState& job, const machine::Snapshot& snapshot) {
+    io::Json json{{"event", "progress"}, {"phase", io::to_json(job.phase)}, {"state", io::to_json(snapshot.state)}};
+    json.update(io::to_json(job.progress));
+    if (snapshot.feed_mm_per_min) json["feed_mm_per_min"] = *snapshot.feed_mm_per_min;
+    if (snapshot.machine_position_mm) json["machine_position_mm"] = *snapshot.machine_position_mm;
+    if (snapshot.work_position_mm) json["work_position_mm"] = *snapshot.work_position_mm;
+    return json;
+  }
+
+  static void emit(const io::Json& json) {
+    fmt::print("{}\n", io::print(json));
+    std::fflush(stdout);
+  }
+
+  Pace pace_{500ms};
+  job::JobPhase phase_ = job::JobPhase::Running;
+};
+
+/// What of the file was executed although or because a line was refused.
+std::string aftermath_text(const job::JobState& job) {
+  const job::Aftermath& aftermath = job.aftermath;
+  if (aftermath.lines_executed_after_refusal > 0) {
+    return fmt::format(" {} line{} behind it that the controller had already taken {} executed.",
+                       aftermath.lines_executed_after_refusal, aftermath.lines_executed_after_refusal == 1 ? "" : "s",
+                       aftermath.lines_executed_after_refusal == 1 ? "was" : "were");
+  }
+  return " No line behind it was executed.";
+}
+
+}  // namespace
+
+std::string summary_of(const job::JobState& job, const machine::Snapshot& snapshot) {
+  const job::Progress& progress = job.progress;
+  const std::string where = position_text(snapshot);
+  switch (job.phase) {
+    case job::JobPhase::Finished:
+      return fmt::format("Done: {} lines of {} in {}{}.", progress.lines_total, job.program,
+                         clock_text(progress.elapsed_s),
+                         progress.held_s >= 1 ? fmt::format(" ({} of it held)", clock_text(progress.held_s)) : "");
+    case job::JobPhase::Refused:
+      if (job.refusal) {
+        return fmt::format("{}, line {}: the controller refused '{}' with error {}: {}{}", job.program,
+                           job.refusal->file_line, job.refusal->text, job.refusal->code, job.refusal->meaning,
+                           aftermath_text(job));
+      }
+      break;
+    default: break;
+  }
+  std::string text = job.reason;
+  if (progress.file_line > 0) {
+    text += fmt::format(" The last line that was taken is {} of {}", progress.file_line, progress.lines_total);
+    text += where.empty() ? "." : fmt::format(", the machine stands at {}.", where);
+  }
+  if (job.position_suspect) text += " The position may be wrong: home the machine before you go on.";
+  return text;
+}
+
+std::unique_ptr<JobView> make_terminal_view() {
+  return std::make_unique<TerminalView>();
+}
+std::unique_ptr<JobView> make_line_view() {
+  return std::make_unique<LineView>();
+}
+std::unique_ptr<JobView> make_json_view() {
+  return std::make_unique<JsonView>();
+}
+
+}  // namespace kerf::apps

@@ -1,0 +1,184 @@
+// `kerf`: reads the command line and calls one of the sub-commands. The only file that knows CLI11.
+
+#include <algorithm>
+#include <csignal>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/commands.hpp"
+
+namespace {
+
+using kerf::apps::ExitStatus;
+
+constexpr const char* kVersion = KERF_VERSION;
+
+constexpr const char* kMachineHelp =
+    "Where the machine is:\n"
+    "  /dev/ttyUSB0       a serial port (in full: serial:///dev/ttyUSB0?baud=115200)\n"
+    "  HOST:PORT          a machine in the network (tcp://HOST:PORT)\n"
+    "  /tmp/kerf-grbl     a pseudo-terminal (pty:///tmp/kerf-grbl)\n"
+    "  virtual:grblhal    a machine inside Kerf: grbl, rabbit or grblhal; add ?speed=20 or ?speed=max";
+
+constexpr const char* kFooter =
+    "\nFirst steps, without a machine:\n"
+    "  kerf run examples/coaster.nc --machine \"virtual:grblhal?speed=20\"\n"
+    "With one:\n"
+    "  kerf ports                                which ports are there?\n"
+    "  kerf info --machine /dev/ttyUSB0          what is on that port?\n"
+    "  kerf run part.nc --machine /dev/ttyUSB0   cut a file; Ctrl-C holds\n"
+    "\n'kerf COMMAND --help' says more about a command.\n"
+    "Exit status: 0 done, 1 wrong option or file, 2 no connection, 3 a line was refused, 4 alarm, 5 interrupted.\n";
+
+/// The sub-command that was chosen, ready to run.
+using Chosen = std::function<ExitStatus()>;
+
+void add_run(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::RunOptions>();
+  CLI::App* command = kerf.add_subcommand("run", "Cut a G-code file: connect, stream it, show the progress");
+  command->add_option("FILE", options->file, "The G-code file")->required()->type_name("");
+  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  command->add_flag("--json", options->json, "Print events as JSON, one object a line, instead of the progress");
+  command->footer("\nCtrl-C (or Space) holds the machine and asks whether to go on; Ctrl-C again stops the job.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::run(*options); }; });
+}
+
+void add_virtual(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::VirtualOptions>();
+  CLI::App* command = kerf.add_subcommand("virtual", "Be a controller: serve a virtual machine to any sender");
+  command->add_option("-p,--personality", options->personality, "Which firmware to be: grbl, rabbit or grblhal")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command
+      ->add_option("-l,--listen", options->listen,
+                   "Serve at this TCP address, such as tcp://127.0.0.1:5001; port 0 takes a free one")
+      ->type_name("URL");
+  command
+      ->add_option("--pty", options->pty,
+                   "Serve at a pseudo-terminal with this name, for senders that only know serial ports")
+      ->type_name("PATH");
+  command->add_option("--speed", options->speed, "Pace: 1 is real time, 10 ten times as fast, max without waiting")
+      ->type_name("N|max")
+      ->capture_default_str();
+  command->add_option("--settings", options->settings_file, "Start with the $n=value lines of this file")
+      ->type_name("FILE");
+  command
+      ->add_option("--state", options->state_file,
+                   "Keep settings and offsets in this file, as a real controller does in its memory")
+      ->type_name("FILE");
+  command->footer(
+      "\nAny sender can connect, for example: kerf run examples/coaster.nc --machine 127.0.0.1:5001\n"
+      "One TCP client at a time; a second one is turned away while the first is connected.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::serve_virtual(*options); }; });
+}
+
+void add_describe(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::DescribeOptions>();
+  CLI::App* command = kerf.add_subcommand("info", "Say what a controller is and can do, as it tells itself");
+  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  command->add_flag("--json", options->json, "Print everything as one JSON object");
+  command->footer("");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::describe_machine(*options); }; });
+}
+
+void add_console(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::ConsoleOptions>();
+  CLI::App* command = kerf.add_subcommand("console", "Type to a controller; answers come with their meaning");
+  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  command->footer(
+      "\nAt the start of a line these keys act at once: ? status, ! feed hold, ~ cycle start, Ctrl-X reset.\n"
+      "Arrow up brings back earlier lines; Ctrl-D leaves.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::console(*options); }; });
+}
+
+void add_ports(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::PortsOptions>();
+  CLI::App* command = kerf.add_subcommand("ports", "List what --machine could name: serial ports, network, virtual");
+  command->add_flag("--json", options->json, "Print the list as one JSON object");
+  command->footer("");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::list_ports(*options); }; });
+}
+
+void add_verify(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::VerifyOptions>();
+  CLI::App* command = kerf.add_subcommand("verify", "Hold recorded conversations (.talk files) with a controller");
+  command->add_option("FILE", options->files, ".talk files, or folders of them")->required()->type_name("");
+  CLI::Option* machine =
+      command
+          ->add_option(
+              "-m,--machine", options->machine,
+              "The controller to talk to, in real time;\nwithout it, the virtual one of each talk's personality")
+          ->type_name("URL");
+  command->add_option("-p,--personality", options->personality, "Only the talks of grbl, rabbit or grblhal")
+      ->type_name("NAME")
+      ->excludes(machine);
+  command->add_flag("-v,--verbose", options->verbose, "Show every line said and heard");
+  command->footer("\nOn a real machine a talk moves axes and may change settings: take the tool out first.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::verify(*options); }; });
+}
+
+/// What is wrong with the command line, as one sentence that ends with what to do.
+std::string sentence_of(const CLI::App& kerf, const CLI::ParseError& error, std::string_view first_word) {
+  std::string help = "kerf --help";
+  std::vector<std::string> unknown = kerf.remaining();
+  for (const CLI::App* command : kerf.get_subcommands()) {
+    help = "kerf " + command->get_name() + " --help";
+    if (unknown.empty()) unknown = command->remaining();
+  }
+  if (kerf.get_subcommands().empty()) {
+    const std::string_view kind = first_word.starts_with('-') ? "option" : "command";
+    return fmt::format("There is no {} '{}': see '{}'.", kind, first_word, help);
+  }
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !unknown.empty()) {
+    return fmt::format("'{}' is not understood here: see '{}'.", unknown.front(), help);
+  }
+  std::string what = error.what();
+  std::ranges::replace(what, '\n', ' ');
+  while (what.ends_with('.') || what.ends_with(' ')) what.pop_back();
+  return fmt::format("{}: see '{}'.", what, help);
+}
+
+int start(int argc, char** argv) {
+  CLI::App kerf("Kerf sends G-code to Grbl, Rabbit GRBL and grblHAL machines, and can be one.", "kerf");
+  kerf.set_version_flag("--version", fmt::format("kerf {}", kVersion));
+  kerf.require_subcommand(1);
+  kerf.footer(kFooter);
+  Chosen chosen;
+  add_run(kerf, chosen);
+  add_virtual(kerf, chosen);
+  add_describe(kerf, chosen);
+  add_console(kerf, chosen);
+  add_ports(kerf, chosen);
+  add_verify(kerf, chosen);
+  if (argc < 2) {
+    fmt::print("{}", kerf.help());
+    return static_cast<int>(ExitStatus::Usage);
+  }
+  try {
+    kerf.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return kerf.exit(error);
+    kerf::apps::complain(sentence_of(kerf, error, argv[1]));
+    return static_cast<int>(ExitStatus::Usage);
+  }
+  return static_cast<int>(chosen());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe or socket is an error of that write, not the end of the program
+  try {
+    return start(argc, argv);
+  } catch (const std::exception& error) {
+    kerf::apps::complain(fmt::format("Something unexpected happened ({}): please report it.", error.what()));
+    return static_cast<int>(ExitStatus::Interrupted);
+  }
+}

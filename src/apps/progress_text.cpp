@@ -1,0 +1,107 @@
+#include "apps/progress_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "common/vocabulary/axis.hpp"
+
+namespace kerf::apps {
+namespace {
+
+using vocabulary::MachineState;
+
+std::string remaining_text(const job::Progress& progress) {
+  if (!progress.remaining_at_this_pace_s) return "-:--";
+  return clock_text(*progress.remaining_at_this_pace_s);
+}
+
+std::string feed_text(const machine::Snapshot& snapshot) {
+  return snapshot.feed_mm_per_min ? fmt::format("F{:.0f}", *snapshot.feed_mm_per_min) : std::string();
+}
+
+std::string bar(double percent, int cells, bool with_utf8) {
+  const auto filled = static_cast<int>(std::lround(percent / 100 * cells));
+  std::string text;
+  for (int cell = 0; cell < cells; ++cell) {
+    if (with_utf8) {
+      text += cell < filled ? "█" : "░";
+    } else {
+      text += cell < filled ? '#' : '.';
+    }
+  }
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) {
+    if (part.empty()) continue;
+    if (!text.empty()) text += "  ";
+    text += part;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<long>(std::max(0.0, seconds));
+  if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+  return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+std::string position_text(const machine::Snapshot& snapshot) {
+  const auto& position = snapshot.work_position_mm ? snapshot.work_position_mm : snapshot.machine_position_mm;
+  if (!position) return {};
+  std::string text;
+  for (std::size_t axis = 0; axis < std::min(position->size(), vocabulary::kMaxAxes); ++axis) {
+    // Rounding must not show a minus in front of zero.
+    const double value = std::abs((*position)[axis]) < 0.0005 ? 0.0 : (*position)[axis];
+    text += fmt::format("{}{}{:.3f}", text.empty() ? "" : " ", vocabulary::kAxisLetters[axis], value);
+  }
+  return text;
+}
+
+std::string state_text(const machine::Snapshot& snapshot) {
+  if (snapshot.state == MachineState::Hold && snapshot.substate == vocabulary::kHoldDecelerating) {
+    return "Hold (decelerating)";
+  }
+  return std::string(name_of(snapshot.state));
+}
+
+std::string progress_bar(const job::JobState& job, const machine::Snapshot& snapshot, int columns, bool with_utf8) {
+  const job::Progress& progress = job.progress;
+  const std::string percent = fmt::format("{:3.0f} %", std::floor(progress.percent));
+  const std::string line = fmt::format("line {}/{}", progress.file_line, progress.lines_total);
+  const std::string times = fmt::format("{} gone, {} left", clock_text(progress.elapsed_s), remaining_text(progress));
+  const std::string feed = feed_text(snapshot);
+  const std::string position = position_text(snapshot);
+  const std::string state = state_text(snapshot);
+  const auto room = static_cast<std::size_t>(std::max(columns - 1, 1));
+
+  std::string text = joined({percent, line, times, feed, position, state});
+  constexpr std::size_t kLeastCells = 8;
+  constexpr std::size_t kMostCells = 40;
+  if (text.size() + 2 + kLeastCells <= room) {
+    const std::size_t cells = std::min(kMostCells, room - text.size() - 2);
+    return bar(progress.percent, static_cast<int>(cells), with_utf8) + "  " + text;
+  }
+  if (text.size() > room) text = joined({percent, line, times, position, state});
+  if (text.size() > room) text = joined({percent, times, position, state});
+  if (text.size() > room) text = joined({percent, times, state});
+  if (text.size() > room) text = joined({percent, state});
+  return text.substr(0, room);
+}
+
+std::string progress_line(const job::JobState& job, const machine::Snapshot& snapshot) {
+  const job::Progress& progress = job.progress;
+  return joined({fmt::format("{:3.0f} %", std::floor(progress.percent)),
+                 fmt::format("line {}/{}", progress.file_line, progress.lines_total),
+                 fmt::format("{} gone, {} left", clock_text(progress.elapsed_s), remaining_text(progress)),
+                 feed_text(snapshot), position_text(snapshot), state_text(snapshot)});
+}
+
+}  // namespace kerf::apps

@@ -1,0 +1,29 @@
+#pragma once
+// A job's progress in words. Pure: what is shown follows from the values.
+
+#include <string>
+
+#include "sender/job/job_state.hpp"
+#include "sender/machine/snapshot.hpp"
+
+namespace kerf::apps {
+
+/// "4:05", "1:02:09"; seconds are cut, not rounded.
+[[nodiscard]] std::string clock_text(double seconds);
+
+/// "X12.345 Y-3.000 Z0.500", the work position if it is known, else the machine position; axes are named in Grbl's
+/// order.
+[[nodiscard]] std::string position_text(const machine::Snapshot& snapshot);
+
+/// "Run", "Hold (decelerating)"
+[[nodiscard]] std::string state_text(const machine::Snapshot& snapshot);
+
+/// One line that fits into `columns`: bar, percent, line, elapsed, remaining, feed, position, state. What does not fit
+/// is left out from the least important on: the bar first, then feed and line.
+[[nodiscard]] std::string progress_bar(const job::JobState& job, const machine::Snapshot& snapshot, int columns,
+                                       bool with_utf8);
+
+/// The same without a bar, for a log file.
+[[nodiscard]] std::string progress_line(const job::JobState& job, const machine::Snapshot& snapshot);
+
+}  // namespace kerf::apps

@@ -1,0 +1,224 @@
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "apps/commands.hpp"
+#include "io/event_loop.hpp"
+#include "io/machine_url.hpp"
+#include "io/text_file.hpp"
+#include "io/transport.hpp"
+#include "simulation/talk.hpp"
+#include "simulation/talk_conversation.hpp"
+#include "simulation/talk_runner.hpp"
+
+namespace kerf::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using simulation::Talk;
+using simulation::TalkFailure;
+
+struct NamedTalk {
+  std::string file;
+  Talk talk;
+};
+
+/// What became of one talk. Neither failed nor skipped: it passed.
+struct Result {
+  std::optional<TalkFailure> failure;
+  std::string skipped_because;
+  std::string record;
+  std::optional<std::string> link_trouble;  ///< no point in going on
+};
+
+/// Folders become the talks in them, sorted.
+std::vector<std::string> talk_files(const std::vector<std::string>& names) {
+  std::vector<std::string> files;
+  for (const std::string& name : names) {
+    std::error_code fault;
+    if (!fs::is_directory(name, fault)) {
+      files.push_back(name);
+      continue;
+    }
+    std::vector<std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(name, fault)) {
+      if (entry.path().extension() == ".talk") found.push_back(entry.path().string());
+    }
+    std::ranges::sort(found);
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  return files;
+}
+
+/// Says what is wrong with the first file that is no talk.
+std::optional<std::vector<NamedTalk>> load_talks(const VerifyOptions& options) {
+  std::vector<NamedTalk> talks;
+  for (const std::string& file : talk_files(options.files)) {
+    const auto text = io::read_text_file(file);
+    if (!text) {
+      complain(io::explain(text.error(), file));
+      return std::nullopt;
+    }
+    std::error_code ignored;
+    const std::string folder = fs::absolute(file, ignored).parent_path().filename().string();
+    auto talk = simulation::parse_talk(*text, folder);
+    if (!talk) {
+      complain(fmt::format("{}, line {}: {}.", file, talk.error().line, simulation::explain(talk.error().fault)));
+      return std::nullopt;
+    }
+    talks.push_back({.file = file, .talk = *std::move(talk)});
+  }
+  if (talks.empty()) complain("There are no .talk files there: name some, for example tests/transcripts.");
+  return talks.empty() ? std::nullopt : std::optional(std::move(talks));
+}
+
+/// Why real firmware cannot hold this talk; empty if it can.
+std::string obstacle(const Talk& talk) {
+  if (talk.virtual_only_because) return "virtual only: " + *talk.virtual_only_because;
+  if (talk.moves_switches()) return "somebody would have to press switches";
+  return {};
+}
+
+/// Holds talks with whatever is behind a URL, one connection a talk, in real time.
+class LiveRunner {
+ public:
+  explicit LiveRunner(io::MachineUrl url) : url_(std::move(url)), timer_(loop_) {}
+
+  Result run(const Talk& talk) {
+    result_ = {};
+    result_.skipped_because = obstacle(talk);
+    if (!result_.skipped_because.empty()) return result_;
+    simulation::TalkConversation conversation(talk, loop_.now());
+    conversation_ = &conversation;
+    was_opened_ = false;
+    const auto link = io::open_transport(loop_, url_,
+                                         {.opened =
+                                              [this] {
+                                                was_opened_ = true;
+                                                settle();
+                                              },
+                                          .received =
+                                              [this](std::string_view bytes) {
+                                                conversation_->on_bytes(loop_.now(), bytes);
+                                                settle();
+                                              },
+                                          .lost = [this](const io::TransportError& error) { on_lost(error); }});
+    link_ = link.get();
+    constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
+    const io::SignalWatch signals(loop_, kSignals, [this](int) {
+      result_.link_trouble = "Interrupted.";
+      loop_.stop();
+    });
+    loop_.run();
+    timer_.disarm();
+    result_.failure = conversation.failure();
+    result_.record = conversation.record();
+    if (conversation.came_too_late()) result_.skipped_because = "only right after the controller was switched on";
+    return result_;
+  }
+
+ private:
+  void on_lost(const io::TransportError& error) {
+    if (!was_opened_) result_.link_trouble = io::explain(url_, error);
+    conversation_->on_closed();
+    loop_.stop();
+  }
+
+  void settle() {
+    for (;;) {
+      conversation_->advance_to(loop_.now());
+      const simulation::TalkOutbox said = conversation_->take_outbox();
+      if (said.is_empty()) break;
+      link_->write_lines(said.bytes);
+    }
+    if (conversation_->is_finished()) return loop_.stop();
+    timer_.arm(conversation_->next_deadline(), [this] { settle(); });
+  }
+
+  const io::MachineUrl url_;
+  io::EventLoop loop_;
+  io::Timer timer_;
+  simulation::TalkConversation* conversation_ = nullptr;
+  io::Transport* link_ = nullptr;
+  bool was_opened_ = false;
+  Result result_;
+};
+
+Result run_virtually(const Talk& talk) {
+  simulation::TalkOutcome outcome = simulation::run_talk(talk);
+  return {.failure = std::move(outcome.failure),
+          .skipped_because = {},
+          .record = std::move(outcome.record),
+          .link_trouble = {}};
+}
+
+void print_result(const NamedTalk& talk, const Result& result, bool verbose) {
+  if (!result.skipped_because.empty()) {
+    fmt::print("skip  {}  ({})\n", talk.file, result.skipped_because);
+  } else if (result.failure) {
+    fmt::print("FAIL  {}:{}: {}: {}\n", talk.file, result.failure->line, result.failure->step, result.failure->what);
+  } else {
+    fmt::print("ok    {}\n", talk.file);
+  }
+  if (verbose || result.failure) fmt::print("{}", result.record);
+  std::fflush(stdout);
+}
+
+ExitStatus hold_talks(const std::vector<NamedTalk>& talks, const VerifyOptions& options, LiveRunner* live) {
+  int passed = 0;
+  int failed = 0;
+  int skipped = 0;
+  for (const NamedTalk& talk : talks) {
+    const Result result = live != nullptr ? live->run(talk.talk) : run_virtually(talk.talk);
+    if (result.link_trouble) {
+      complain(*result.link_trouble);
+      return ExitStatus::NoConnection;
+    }
+    print_result(talk, result, options.verbose);
+    if (!result.skipped_because.empty()) {
+      ++skipped;
+    } else if (result.failure) {
+      ++failed;
+    } else {
+      ++passed;
+    }
+  }
+  fmt::print("{} passed, {} failed, {} skipped\n", passed, failed, skipped);
+  return failed > 0 ? ExitStatus::Refused : ExitStatus::Done;
+}
+
+}  // namespace
+
+ExitStatus verify(const VerifyOptions& options) {
+  std::unique_ptr<LiveRunner> live;
+  std::optional<vocabulary::Firmware> only;
+  if (!options.machine.empty()) {
+    const auto url = io::parse_machine_url(options.machine);
+    if (!url) {
+      complain(io::explain(url.error()));
+      return ExitStatus::Usage;
+    }
+    live = std::make_unique<LiveRunner>(*url);
+  }
+  if (!options.personality.empty()) {
+    const auto personality = io::parse_personality(options.personality);
+    if (!personality) {
+      complain(io::explain(personality.error()));
+      return ExitStatus::Usage;
+    }
+    only = *personality;
+  }
+  auto talks = load_talks(options);
+  if (!talks) return ExitStatus::Usage;
+  if (only) std::erase_if(*talks, [&](const NamedTalk& talk) { return talk.talk.personality != *only; });
+  return hold_talks(*talks, options, live.get());
+}
+
+}  // namespace kerf::apps

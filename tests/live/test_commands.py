@@ -1,0 +1,110 @@
+"""info, console, ports, verify, and what `kerf virtual` keeps."""
+
+import json
+import os
+import unittest
+
+from kerf_program import DONE, PERSONALITIES, REFUSED, LiveTest, OnTerminal, VirtualMachine, kerf
+
+FIRMWARES = {"grbl": "Grbl", "rabbit": "Rabbit GRBL", "grblhal": "grblHAL"}
+
+
+class Describe(LiveTest):
+    def test_json(self):
+        for personality in PERSONALITIES:
+            with self.subTest(personality), VirtualMachine(personality) as machine:
+                result = kerf("info", "--machine", machine.url, "--json")
+                self.assertEqual(result.returncode, DONE, result.stderr)
+                told = json.loads(result.stdout)
+                self.assertEqual(told["firmware"], FIRMWARES[personality])
+                for key in ("version", "options", "capabilities", "axes", "buffers"):
+                    self.assertIn(key, told)
+                for key in ("alarms", "errors", "settings"):
+                    self.assertIsInstance(told[key], list)
+                    self.assertTrue(told[key], key)
+
+    def test_text(self):
+        result = kerf("info", "--machine", "virtual:grblhal")
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        for words in ("grblHAL 1.1f", "Axes", "Receive buffer", "Alarms (", "Errors (", "Settings ("):
+            self.assertIn(words, result.stdout)
+
+
+class Console(LiveTest):
+    def test_from_a_pipe(self):
+        result = kerf("console", "--machine", "virtual:grbl", text="$G\n?\nG99\n")
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        self.assertIn("[GC:", result.stdout)
+        self.assertIn("<Idle|", result.stdout)
+        self.assertRegex(result.stdout, r"error:20\n    \S")
+
+    def test_on_a_terminal(self):
+        with OnTerminal("console", "--machine", "virtual:grblhal") as terminal:
+            terminal.wait_for("Ctrl-D leaves")
+            terminal.press("$I\n")
+            terminal.wait_for(r"\[FIRMWARE:grblHAL\]")
+            terminal.press("?")
+            terminal.wait_for(r"<Idle\|")
+            terminal.press("!")
+            terminal.press("?")
+            terminal.wait_for(r"<Hold:0\|")
+            terminal.press("~")
+            terminal.press("\x18")
+            terminal.wait_for(r"GrblHAL 1\.1f")
+            terminal.press("\x04")
+            self.assertEqual(terminal.wait(), DONE)
+
+
+class Ports(LiveTest):
+    def test_lists_the_virtual_machines(self):
+        told = json.loads(kerf("ports", "--json").stdout)
+        self.assertEqual([machine["url"] for machine in told["virtual_machines"]],
+                         ["virtual:grbl", "virtual:rabbit", "virtual:grblhal"])
+        self.assertIsInstance(told["serial"], list)
+        self.assertIn("virtual:rabbit", kerf("ports").stdout)
+
+
+class Verify(LiveTest):
+    TALK = "% personality grbl\n-> G21\n<- ok\n-> G99\n<- error:20\n-> ?\n<- <Idle|*\n"
+
+    def test_virtual_and_live(self):
+        talk = self.file("units.talk", self.TALK)
+        self.assertEqual(kerf("verify", talk).returncode, DONE)
+        with VirtualMachine("grbl", speed="1") as machine:
+            result = kerf("verify", "--machine", machine.url, talk)
+            self.assertEqual(result.returncode, DONE, result.stdout + result.stderr)
+            self.assertIn("1 passed", result.stdout)
+
+    def test_failure_names_the_line(self):
+        result = kerf("verify", self.file("wrong.talk", "% personality grbl\n-> G21\n<- error:1\n"))
+        self.assertEqual(result.returncode, REFUSED)
+        self.assertIn("wrong.talk:3", result.stdout)
+
+    def test_no_talk(self):
+        self.assert_complains(kerf("verify", self.file("a.talk", "G21\n")), 1, "a.talk", "line 1")
+        self.assert_complains(kerf("verify", self.folder + "/b.talk"), 1, "b.talk")
+
+
+class Memory(LiveTest):
+    def test_settings_and_offsets_survive_a_restart(self):
+        state = os.path.join(self.folder, "state")
+        for personality in PERSONALITIES:
+            with self.subTest(personality):
+                path = state + personality
+                with VirtualMachine(personality, "--state", path) as machine:
+                    kerf("console", "--machine", machine.url, text="$110=321\nG10 L2 P1 X5\n")
+                with VirtualMachine(personality, "--state", path) as machine:
+                    told = kerf("console", "--machine", machine.url, text="$$\n$#\n").stdout
+                self.assertIn("$110=321", told)
+                self.assertIn("[G54:5.000", told)
+
+    def test_settings_file(self):
+        settings = self.file("settings", "; a comment\n$110=777\n")
+        with VirtualMachine("grbl", "--settings", settings) as machine:
+            told = json.loads(kerf("info", "--machine", machine.url, "--json").stdout)
+        values = {setting["id"]: setting.get("value") for setting in told["settings"]}
+        self.assertEqual(float(values["110"]), 777)
+
+
+if __name__ == "__main__":
+    unittest.main()
