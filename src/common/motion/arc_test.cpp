@@ -11,7 +11,7 @@ namespace {
 using vocabulary::Firmware;
 
 constexpr Firmware kAll[] = {Firmware::Grbl, Firmware::Rabbit, Firmware::GrblHal};
-const MotionSettings kSettings{.axes = 3, .arc_tolerance_mm = 0.002F};
+constexpr MotionSettings kSettings{.axes = 3, .arc_tolerance_mm = 0.002F};
 
 std::vector<AxisValues> chords_of(const Arc& arc, Firmware firmware, const MotionSettings& settings = kSettings) {
   ArcChords chords(arc, rules_of(firmware), settings);

@@ -12,7 +12,6 @@ using testing::feed;
 using testing::line_to;
 using testing::Machine;
 using testing::plain_settings;
-using testing::rapid;
 using vocabulary::Axis;
 using vocabulary::Firmware;
 
