@@ -107,7 +107,7 @@ struct Dialect {
   int line_length{};  ///< most characters of a line that are accepted
   LineLengthRule line_length_rule{};
   LongLineRule long_line_rule{};
-  int stored_line_length{};  ///< of startup lines and `$I=`
+  int stored_line_length{};  ///< most characters of a startup line or of the text of `$I=`
 
   LineEnding line_ending{};
   PercentRule percent_rule{};

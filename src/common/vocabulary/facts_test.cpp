@@ -149,6 +149,7 @@ TEST(Facts, FeedbackTexts) {
   EXPECT_EQ(feedback_text(Firmware::Rabbit, FeedbackText::Enabled), "");
   EXPECT_EQ(feedback_of("pgm end"), FeedbackText::ProgramEnd);
   EXPECT_EQ(feedback_of("Warning: Perform a probe with $TPW first!"), FeedbackText::ProbeToolFirst);
+  EXPECT_EQ(feedback_of("Reset during streaming of file at line: 12"), FeedbackText::ResetDuringFile);
   EXPECT_EQ(feedback_of(""), std::nullopt);
   EXPECT_EQ(feedback_of("hello"), std::nullopt);
   EXPECT_EQ(feedback_kind("Info: Job terminated due to connection change"), FeedbackKind::Info);

@@ -1,5 +1,7 @@
 #pragma once
-// The firmwares that Kerf knows by name, and sets of them for "who has this" columns.
+// The firmwares that Kerf knows by name, and sets of them for "who has this" columns. The tables of this folder
+// describe Grbl 1.1h (build 20190830), Rabbit GRBL 1.6.0 (build 20260315) and grblHAL's core of August 2026 at
+// compatibility level 0; where another version or level differs, the row says so.
 
 #include <cstdint>
 #include <string_view>

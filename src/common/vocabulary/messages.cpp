@@ -119,6 +119,10 @@ constexpr std::array kFeedback{
     FeedbackRow{FeedbackText::BluetoothActive, "", "", "BLUETOOTH STREAM ACTIVE",
                 "Another client took over by Bluetooth."},
     FeedbackRow{FeedbackText::SerialActive, "", "", "SERIAL STREAM ACTIVE", "The serial port took over."},
+    FeedbackRow{FeedbackText::ResetDuringFile, "", "",
+                "Reset during streaming of file at line: ", "A reset ended a file job."},
+    FeedbackRow{FeedbackText::FileJobTerminated, "", "", "Job terminated due to connection change",
+                "The connection was lost or taken over during a file job."},
 };
 
 struct KindRow {
@@ -165,6 +169,7 @@ std::optional<FeedbackText> feedback_of(std::string_view text) {
   for (const FeedbackRow& row : kFeedback) {
     for (const std::string_view known : {row.grbl, row.rabbit, row.grblhal}) {
       if (base::iequals(known, plain)) return row.id;
+      if (known.ends_with(": ") && base::starts_with_ignoring_case(plain, known)) return row.id;
     }
   }
   return std::nullopt;

@@ -50,9 +50,12 @@ enum class FeedbackText : std::uint8_t {
   WebSocketActive,
   BluetoothActive,
   SerialActive,
+  ResetDuringFile,
+  FileJobTerminated,
 };
 
-/// The literal text on each firmware (empty where it does not exist), and what it tells.
+/// The literal text on each firmware (empty where it does not exist), and what it tells. A text that ends in `: ` is
+/// followed by a number.
 struct FeedbackRow {
   FeedbackText id{};
   std::string_view grbl;

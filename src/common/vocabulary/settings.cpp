@@ -130,10 +130,10 @@ std::string_view item_of(const SettingRow& row, int index) {
 
 int decimals_of(const SettingRow& row) {
   if (row.type != SettingType::Decimal) return 0;
-  const std::size_t point = row.format.find('.');
-  // grblHAL prints one decimal where the mask has none: $33 with "#####0" shows 5000.0 (transcript 04).
-  if (point == std::string_view::npos) return 1;
-  return static_cast<int>(row.format.size() - point - 1);
+  // A default shows it best: grblHAL's $33 has the mask "#####0" and prints 5000.0 (transcript 04).
+  const std::string_view sample = row.default_value.empty() ? row.format : row.default_value;
+  const std::size_t point = sample.find('.');
+  return point == std::string_view::npos ? 0 : static_cast<int>(sample.size() - point - 1);
 }
 
 }  // namespace kerf::vocabulary

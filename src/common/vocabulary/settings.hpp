@@ -135,7 +135,7 @@ struct SettingMatch {
 [[nodiscard]] int group_of(const SettingMatch& match);
 /// The items of a bit field or radio, in order; unavailable ones are "N/A".
 [[nodiscard]] std::string_view item_of(const SettingRow& row, int index);
-/// Digits after the point that a `#0.000##` mask prints; 0 for integers.
+/// Digits after the point that the firmware prints: those of the default, else of the `#0.000##` mask.
 [[nodiscard]] int decimals_of(const SettingRow& row);
 
 }  // namespace kerf::vocabulary

@@ -57,7 +57,7 @@ TEST(Settings, RowsAreComplete) {
 }
 
 // A default must be one that the controller would accept and print.
-TEST(Settings, DefaultsAreInRangeAndPrintedAsTheFormatSays) {
+TEST(Settings, DefaultsAreInRangeAndPrintedAlike) {
   for (const Firmware firmware : kFirmwares) {
     for (const SettingRow& row : setting_rows(firmware)) {
       if (row.type != SettingType::Decimal && row.type != SettingType::Integer) continue;
@@ -158,6 +158,8 @@ TEST(Settings, ItemsOfBitFields) {
   EXPECT_EQ(item_of(homing, 11), "");
   EXPECT_EQ(decimals_of(*match(Firmware::GrblHal, 100).row), 5);
   EXPECT_EQ(decimals_of(*match(Firmware::GrblHal, 33).row), 1);
+  EXPECT_EQ(decimals_of(*match(Firmware::Grbl, 30).row), 0);
+  EXPECT_EQ(decimals_of(*match(Firmware::GrblHal, 160).row), 5);
   EXPECT_EQ(decimals_of(homing), 0);
 }
 

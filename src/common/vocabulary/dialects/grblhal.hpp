@@ -28,7 +28,7 @@ inline constexpr Dialect kGrblHal{
     .line_length = 256,
     .line_length_rule = LineLengthRule::AfterLeadingBlanks,
     .long_line_rule = LongLineRule::RefusedAtEnd,
-    .stored_line_length = 70,
+    .stored_line_length = 68,  // 70 bytes, of which two stay free (system.c 639-758, transcript 43)
     .line_ending = LineEnding::PairedEitherWay,
     .percent_rule = PercentRule::ProgramToggle,
     .block_delete_rule = BlockDeleteRule::SkippedIfOn,
