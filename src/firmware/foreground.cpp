@@ -259,9 +259,9 @@ void Foreground::look_at_switches() {
   enter_critical_alarm(AlarmCode::HardLimit);
 }
 
-bool Foreground::keeps_realtime_characters() const {
-  if (board_.settings.find(std::to_string(setting::kLegacyRealtime)) == nullptr) return false;
-  return reader_.keeps_realtime_characters() && !board_.settings.flag(setting::kLegacyRealtime);
+Receiver::LineContext Foreground::line_context() const {
+  if (board_.personality.firmware != vocabulary::Firmware::GrblHal || !reader_.keeps_realtime_characters()) return {};
+  return {.keeps_high_bytes = true, .keeps_printable_commands = !board_.settings.flag(setting::kLegacyRealtime)};
 }
 
 Instant Foreground::next_deadline() const {

@@ -48,7 +48,8 @@ class Foreground {
   /// Switches may have changed, by hand or by motion.
   void look_at_switches();
 
-  [[nodiscard]] bool keeps_realtime_characters() const;
+  /// How the line being read treats special bytes.
+  [[nodiscard]] Receiver::LineContext line_context() const;
   [[nodiscard]] WaitingFor waiting_for() const { return waiting_for_; }
   [[nodiscard]] Instant next_deadline() const;
 

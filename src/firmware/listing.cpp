@@ -225,6 +225,7 @@ void Listing::build_information(bool extended) {
 }
 
 void Listing::alarms() {
+  if (titles()) board_.say(protocol::AlarmCodeRow{.id = 0, .title = "None", .text = "No alarm is active."});
   for (const auto& row : board_.personality.dialect().alarms) {
     if (row.code != 0 && is_compiled_in(row)) one_alarm(row.code);
   }
@@ -239,7 +240,8 @@ bool Listing::one_alarm(int code) {
 }
 
 void Listing::errors() {
-  board_.say(protocol::ErrorCodeRow{});
+  board_.say(titles() ? protocol::ErrorCodeRow{.id = 0, .title = "None", .text = "No error occurred."}
+                      : protocol::ErrorCodeRow{});
   for (const auto& row : board_.personality.dialect().errors) {
     if (row.code != 0 && is_compiled_in(row)) one_error(row.code);
   }

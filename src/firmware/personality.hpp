@@ -182,6 +182,7 @@ struct Personality {
   RealtimeRules realtime{};
 
   bool full_buffer_drops_realtime = false;  ///< Rabbit
+  bool drops_delete = false;                ///< grblHAL: DEL outside `$` lines never reaches the line
   bool reads_lines_in_sleep = false;
   bool sleep_needs_setting = false;  ///< grblHAL `$62`
   bool check_mode_is_silent = false;

@@ -4,6 +4,7 @@ namespace kerf::firmware {
 
 namespace {
 
+constexpr std::uint8_t kDelete = 0x7F;
 constexpr std::uint8_t kFirstKeptByte = 0xC0;
 
 bool is_printable_realtime(std::uint8_t byte) {
@@ -12,8 +13,10 @@ bool is_printable_realtime(std::uint8_t byte) {
 
 }  // namespace
 
-Receiver::Fate Receiver::take(std::uint8_t byte, bool keeps_realtime_characters) {
-  const bool is_text = keeps_realtime_characters && (is_printable_realtime(byte) || byte >= kFirstKeptByte);
+Receiver::Fate Receiver::take(std::uint8_t byte, LineContext context) {
+  const bool is_text = (context.keeps_printable_commands && is_printable_realtime(byte)) ||
+                       (context.keeps_high_bytes && byte >= kFirstKeptByte);
+  if (byte == kDelete && personality_.drops_delete && !context.keeps_high_bytes) return Fate::Lost;
   const bool is_realtime = !is_text && vocabulary::is_realtime(personality_.dialect(), byte);
   if (is_realtime && !(full() && personality_.full_buffer_drops_realtime)) return Fate::Realtime;
   if (is_realtime || !ring_.push_back(static_cast<char>(byte))) return Fate::Lost;

@@ -23,8 +23,13 @@ class Receiver {
   /// How an arriving byte is treated.
   enum class Fate : std::uint8_t { Realtime, Buffered, Lost };
 
-  /// `keeps_realtime_characters`: the reader is inside a text in which `?!~` and bytes from 0xC0 are text (grblHAL `$39`=0).
-  Fate take(std::uint8_t byte, bool keeps_realtime_characters);
+  /// What the line being read does to bytes that are no plain text (grblHAL protocol.c protocol_enqueue_realtime_command).
+  struct LineContext {
+    bool keeps_high_bytes = false;         ///< DEL and bytes from 0xC0 are text
+    bool keeps_printable_commands = false;  ///< `?!~` are text
+  };
+
+  Fate take(std::uint8_t byte, LineContext context);
 
   [[nodiscard]] bool empty() const { return ring_.empty(); }
   [[nodiscard]] bool full() const { return ring_.full(); }

@@ -77,7 +77,7 @@ void VirtualController::on_bytes(Instant now, std::string_view bytes) {
   for (const char letter : bytes) {
     const auto byte = static_cast<std::uint8_t>(letter);
     if (parts_->receiver.full()) parts_->foreground.run();
-    const auto fate = parts_->receiver.take(byte, parts_->foreground.keeps_realtime_characters());
+    const auto fate = parts_->receiver.take(byte, parts_->foreground.line_context());
     if (fate != Receiver::Fate::Realtime) {
       // `$39`=0 looks at the line that is being read, byte by byte.
       if (parts_->foreground.waiting_for() == WaitingFor::Nothing && (byte == '$' || byte == '(')) {

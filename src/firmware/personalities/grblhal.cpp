@@ -101,6 +101,7 @@ const Personality kGrblHal = {
                  .resume_says_nothing_said = true,
                  .door_resuming_substate = 4,
                  .door_again_ignored = true},
+    .drops_delete = true,
     .reads_lines_in_sleep = true,
     .sleep_needs_setting = true,
     .has_work_offset_sync_bit = true,
