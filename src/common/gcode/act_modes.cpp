@@ -28,20 +28,18 @@ void store(BlockContext& context, StoredOffset which) {
 }
 
 /// Macros that grblHAL has built in; there are no files to take others from.
-ErrorCode run_macro(const Block& block) {
-  const auto id = static_cast<std::uint32_t>(to_int32(block.p));
-  const WordSet& arguments = block.macro_words;
-  const bool built_in = id >= 1 && id <= 7;
-  if (built_in && block.l > 1) return ErrorCode::ValueOutOfRange;
-  switch (id) {
-    case 1: return arguments.has('Q') ? ErrorCode::Ok : ErrorCode::ValueWordMissing;  // read or write a setting
-    case 2:                                                                           // tool offset, without a table
-      return arguments.has('Q') && arguments.has('R') ? ErrorCode::IllegalToolNumber : ErrorCode::ValueWordMissing;
-    case 3: return arguments.has('I') ? ErrorCode::Ok : ErrorCode::ValueWordMissing;  // parameter by number
-    case 4: return ErrorCode::Ok;                                                     // machine state
-    case 5:                                                                           // select a probe
-      if (!arguments.has('Q')) return ErrorCode::ValueWordMissing;
-      return block.q == 0.0F ? ErrorCode::Ok : ErrorCode::ValueOutOfRange;
+ErrorCode run_macro(const MacroRequest& macro) {
+  const bool built_in = macro.id >= 1 && macro.id <= 7;
+  if (built_in && macro.repeats > 1) return ErrorCode::ValueOutOfRange;
+  switch (macro.id) {
+    case 1: return macro.has_q ? ErrorCode::Ok : ErrorCode::ValueWordMissing;  // read or write a setting
+    case 2:                                                                    // tool offset, without a table
+      return macro.has_q && macro.has_r ? ErrorCode::IllegalToolNumber : ErrorCode::ValueWordMissing;
+    case 3: return macro.has_i ? ErrorCode::Ok : ErrorCode::ValueWordMissing;  // parameter by number
+    case 4: return ErrorCode::Ok;                                              // machine state
+    case 5:                                                                    // select a probe
+      if (!macro.has_q) return ErrorCode::ValueWordMissing;
+      return macro.q == 0.0F ? ErrorCode::Ok : ErrorCode::ValueOutOfRange;
     case 6: return ErrorCode::Ok;                  // no spindle delay
     case 7: return ErrorCode::UnsupportedCommand;  // Modbus
     default: return ErrorCode::ValueOutOfRange;
@@ -104,7 +102,7 @@ void end_program(BlockContext& context) {
   }
   if (context.rules.failure_drops_pending_work) {
     state.arriving_tool.reset();
-    state.modal_macro = false;
+    state.modal_macro.reset();
     state.saved.reset();
   }
   const bool restores = context.rules.program_end_restores_overrides || context.settings.restore_overrides_at_end;
@@ -114,10 +112,18 @@ void end_program(BlockContext& context) {
 }  // namespace
 
 // G65 runs before anything else of its block acts, and nothing else does.
-ErrorCode act_macro(Block& block, BlockContext&) {
-  if (!block.groups.has(Group::G16) || block.macro != MacroCall::NonModal) return ErrorCode::Ok;
+ErrorCode act_macro(Block& block, BlockContext& context) {
+  if (!block.groups.has(Group::G16)) return ErrorCode::Ok;
+  if (block.macro == MacroCall::ModalEachBlock) {
+    // The other words of the block were arguments: of the modes only the motion stays.
+    ModalState kept = context.state.modal;
+    kept.motion = block.modal.motion;
+    kept.canned_cycle = block.modal.canned_cycle;
+    block.modal = kept;
+  }
+  if (block.macro != MacroCall::NonModal) return ErrorCode::Ok;
   block.finished = true;
-  return run_macro(block);
+  return run_macro(block.macro_request);
 }
 
 // In laser mode only G1, G2 and G3 burn, and S takes effect with the motion instead of stopping it.
@@ -158,7 +164,7 @@ ErrorCode act_tool_number(Block& block, BlockContext& context) {
 
 ErrorCode act_tool_select(Block& block, BlockContext& context) {
   ParserState& state = context.state;
-  const std::uint32_t tool = to_uint32(block.t);
+  const auto tool = static_cast<std::uint32_t>(to_int32(block.t));
   if (state.tool_pending == tool) return ErrorCode::Ok;
   state.tool_pending = tool;
   if (context.settings.check_mode) return ErrorCode::Ok;
@@ -226,7 +232,7 @@ ErrorCode act_saved_state(Block& block, BlockContext& context) {
       block.modal.overrides = saved.modal.overrides;
       block.modal.retract = saved.modal.retract;
       block.groups.add(Group::G10);
-      if (saved.modal.work_offset != state.modal.work_offset) {
+      if (saved.modal.work_offset != block.modal.work_offset) {
         block.modal.work_offset = saved.modal.work_offset;
         block.work_offset_mm = context.offsets.work[saved.modal.work_offset];
       }
@@ -340,15 +346,17 @@ ErrorCode act_message(Block& block, BlockContext& context) {
   return ErrorCode::Ok;
 }
 
-// M98, and G66 after G0 or G1: the motion is done, then the macro is not found.
+// M98, and G66 after G0 or G1: the motion is done, then the macro is not found. A motion hides the M98 of its block.
 ErrorCode act_modal_macro(Block& block, BlockContext& context) {
+  ParserState& state = context.state;
   const bool moved = block.axis_command == AxisCommand::Motion &&
                      (block.modal.motion == MotionMode::Rapid || block.modal.motion == MotionMode::Linear);
-  if (context.state.modal_macro && moved) return ErrorCode::ValueOutOfRange;
+  if (moved) return state.modal_macro ? run_macro(*state.modal_macro) : ErrorCode::Ok;
   if (!block.groups.has(Group::G16)) return ErrorCode::Ok;
-  if (block.macro == MacroCall::End) context.state.modal_macro = false;
-  if (block.macro == MacroCall::ModalEachBlock) return run_macro(block);
-  if (block.macro == MacroCall::Subprogram && !context.settings.check_mode) return run_macro(block);
+  if (block.macro == MacroCall::End) state.modal_macro.reset();
+  if (block.macro == MacroCall::ModalEachBlock) return run_macro(block.macro_request);
+  if (block.macro == MacroCall::Subprogram && !context.settings.check_mode)
+    return run_macro({.id = to_int32(block.p), .repeats = block.l});
   return ErrorCode::Ok;
 }
 

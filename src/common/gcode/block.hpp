@@ -109,8 +109,6 @@ struct Block {
   ModalState modal;
   GroupSet groups;
   WordSet words;
-  /// Arguments of G65, as they were before they were taken.
-  WordSet macro_words;
   /// Nothing more to check or to do (G66).
   bool finished = false;
   AxisMask axis_words = 0;
@@ -159,6 +157,7 @@ struct Block {
   bool laser_is_motion = false;
   bool spindle_force_sync = false;
 
+  MacroRequest macro_request;
   std::string message;
 
   [[nodiscard]] bool has_axis(std::size_t axis) const { return (axis_words >> axis & 1U) != 0; }
@@ -192,7 +191,8 @@ struct PreparedText {
   std::string message;
   bool demarcates = false;
 };
-PreparedText prepare_text(std::string_view line, const GcodeRules& rules, const InterpreterSettings& settings,
+/// In a jog `/` has no meaning: it does not begin the line.
+PreparedText prepare_text(std::string_view line, bool jog, const GcodeRules& rules, const InterpreterSettings& settings,
                           BlockBuffer& buffer);
 
 /// Reads the words of a NUL-terminated text into the block.

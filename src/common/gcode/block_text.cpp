@@ -60,11 +60,11 @@ void note_message(std::string_view comment, PreparedText& prepared) {
   prepared.message = comment;
 }
 
-PreparedText normalize(std::string_view line, const InterpreterSettings& settings, BlockBuffer& buffer) {
+PreparedText normalize(std::string_view line, bool jog, const InterpreterSettings& settings, BlockBuffer& buffer) {
   PreparedText prepared;
   while (!line.empty() && !is_printable(line.front())) line.remove_prefix(1);
   if (line.empty() || line.front() == ';') return prepared;
-  if (line.front() == '/') {
+  if (line.front() == '/' && !jog) {
     if (settings.block_delete) return prepared;
     line.remove_prefix(1);
   }
@@ -90,7 +90,7 @@ PreparedText normalize(std::string_view line, const InterpreterSettings& setting
 
 }  // namespace
 
-PreparedText prepare_text(std::string_view line, const GcodeRules& rules, const InterpreterSettings& settings,
+PreparedText prepare_text(std::string_view line, bool jog, const GcodeRules& rules, const InterpreterSettings& settings,
                           BlockBuffer& buffer) {
   buffer.length = 0;
   PreparedText prepared;
@@ -99,7 +99,7 @@ PreparedText prepare_text(std::string_view line, const GcodeRules& rules, const 
       for (const char c : line) buffer.append(c);
       break;
     case BlockText::Collapsed: prepared = collapse(line, buffer); break;
-    case BlockText::WithMessages: prepared = normalize(line, settings, buffer); break;
+    case BlockText::WithMessages: prepared = normalize(line, jog, settings, buffer); break;
   }
   buffer.text[buffer.length] = '\0';
   return prepared;

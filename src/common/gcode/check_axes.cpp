@@ -135,25 +135,15 @@ void reset_scaling(ParserState& state) {
   state.modal.scaling = false;
 }
 
-/// G51: P or I, J, K are the factors, axis words the centre; the present position where there is none.
+/// G51 as Mach3 has it: the axis words are the factors, the centre is zero. Scaling counts as active even with G51 X1.
 ErrorCode start_scaling(Block& block, BlockContext& context) {
   ParserState& state = context.state;
-  if (!block.words.has('P') && block.ijk_words == 0) return ErrorCode::NoAxisWords;
+  if (block.axis_words == 0) return ErrorCode::NoAxisWords;
   for (std::size_t axis = 0; axis < context.axes(); ++axis)
-    state.scale_center_mm[axis] = block.has_axis(axis) ? block.xyz[axis] : state.position_mm[axis];
+    if (block.has_axis(axis)) state.scale_factor[axis] = block.xyz[axis];
+  block.axis_words = 0;
   block.words.take_all(vocabulary::kAxisLetters.substr(0, context.axes()));
-
-  bool scales = false;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (block.words.has('P')) {
-      state.scale_factor[axis] = block.p;
-    } else if (block.has_ijk(axis)) {
-      state.scale_factor[axis] = block.ijk[axis];
-    }
-    scales = scales || state.scale_factor[axis] != 1.0F;
-  }
-  block.words.take_all(block.words.has('P') ? "P" : "IJK");
-  state.modal.scaling = scales;
+  state.modal.scaling = true;
   return ErrorCode::Ok;
 }
 
@@ -186,11 +176,7 @@ ErrorCode check_scaling(Block& block, BlockContext& context) {
   block.modal.scaling = state.modal.scaling;
   if (!state.modal.scaling) return ErrorCode::Ok;
   for (std::size_t axis = 0; axis < context.axes(); ++axis) {
-    if (!block.has_axis(axis)) continue;
-    float& value = block.xyz[axis];
-    const float factor = state.scale_factor[axis];
-    const float center = state.scale_center_mm[axis];
-    value = block.modal.incremental ? value * factor : (value - center) * factor + center;
+    if (block.has_axis(axis)) block.xyz[axis] *= state.scale_factor[axis];
   }
   return ErrorCode::Ok;
 }

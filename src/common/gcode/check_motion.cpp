@@ -231,10 +231,12 @@ ErrorCode check_motion_grblhal(Block& block, BlockContext& context) {
   const MotionMode motion = block.modal.motion;
   if (motion == MotionMode::None) {
     const bool unwanted = block.axis_words != 0 && block.axis_command != AxisCommand::NonModal;
+    if (!unwanted) block.modal.retract = RetractMode::Previous;
     return unwanted ? ErrorCode::AxisWordsExist : ErrorCode::Ok;
   }
   if (block.axis_command != AxisCommand::Motion) return ErrorCode::Ok;
   if (motion == MotionMode::Rapid) return allow_no_axes(block);
+  if (!block.modal.canned_cycle) block.modal.retract = RetractMode::Previous;
   const bool needs_encoder =
       motion == MotionMode::SpindleSynchronized || motion == MotionMode::RigidTap || motion == MotionMode::Thread;
   if (needs_encoder) return ErrorCode::UnsupportedCommand;

@@ -36,16 +36,20 @@ ErrorCode check_macro_words(Block& block, BlockContext& context) {
     if (!block.words.has('L') || block.l == 0) block.l = 1;
   }
   block.words.take_all("LP");
-  block.macro_words = block.words;
+  block.macro_request = {.id = to_int32(block.p), .repeats = block.l};
   const bool takes_arguments =
       block.macro == MacroCall::NonModal || block.macro == MacroCall::Modal || block.macro == MacroCall::ModalEachBlock;
   if (!takes_arguments) return ErrorCode::Ok;
 
+  block.macro_request.has_i = block.words.has('I');
+  block.macro_request.has_q = block.words.has('Q');
+  block.macro_request.has_r = block.words.has('R');
+  block.macro_request.q = block.q;
   block.axis_words = block.ijk_words = 0;
   block.groups = {};
   block.groups.add(Group::G16);
-  block.words.take_all("ABCIJKDEFHMQRSTUVWXYZ");
-  if (block.macro != MacroCall::NonModal) state.modal_macro = true;
+  block.words.take_all("ABCIJKEFHMQRSTUVWXYZ");
+  if (block.macro != MacroCall::NonModal) state.modal_macro = block.macro_request;
   block.finished = block.macro == MacroCall::Modal;
   return ErrorCode::Ok;
 }
@@ -163,22 +167,32 @@ ErrorCode check_tool_set(Block& block, BlockContext& context) {
     block.groups.remove(Group::M6);
     block.words.take('Q');
   } else if (!block.words.has('T')) {
-    block.t = static_cast<float>(context.state.tool_pending);
+    block.t = static_cast<float>(static_cast<std::int32_t>(context.state.tool_pending));
   }
-  if (block.tool_change && to_uint32(block.t) == context.state.tool) block.tool_change = false;
+  if (block.tool_change && static_cast<std::uint32_t>(to_int32(block.t)) == context.state.tool) {
+    block.tool_change = false;
+    block.groups.remove(Group::M6);
+  }
+  return ErrorCode::Ok;
+}
+
+// What changes nothing counts as not there; a jog may have it.
+ErrorCode forget_unchanged_modes(Block& block, BlockContext& context) {
+  const ModalState& now = context.state.modal;
+  if (block.modal.coolant == now.coolant) block.groups.remove(Group::M8);
+  if (block.modal.work_offset == now.work_offset) block.groups.remove(Group::G12);
+  if (block.modal.overrides == now.overrides) block.groups.remove(Group::M9);
   return ErrorCode::Ok;
 }
 
 ErrorCode check_overrides(Block& block, BlockContext&) {
   if (!block.groups.has(Group::M9)) return ErrorCode::Ok;
-  float enabled = 1.0F;
-  if (block.words.has('P')) {
-    if (block.p < 0.0F) return ErrorCode::NegativeValue;
-    enabled = block.p;
-    block.words.take('P');
-  }
+  // Without P it is P1, for G10 of the same block too.
+  if (!block.words.has('P')) block.p = 1.0F;
+  if (block.p < 0.0F) return ErrorCode::NegativeValue;
+  block.words.take('P');
   OverridePermissions& permissions = block.modal.overrides;
-  const bool on = enabled != 0.0F;
+  const bool on = block.p != 0.0F;
   switch (block.override_word) {
     case OverrideWord::None: break;
     case OverrideWord::Enable: permissions.feed = permissions.spindle = true; break;

@@ -19,6 +19,7 @@ ErrorCode check_spindle_speed(Block& block, BlockContext& context);
 ErrorCode check_spindle_grblhal(Block& block, BlockContext& context);
 ErrorCode check_tool_set(Block& block, BlockContext& context);
 ErrorCode check_overrides(Block& block, BlockContext& context);
+ErrorCode forget_unchanged_modes(Block& block, BlockContext& context);
 ErrorCode check_dwell(Block& block, BlockContext& context);
 ErrorCode check_pins(Block& block, BlockContext& context);
 ErrorCode check_unused_words(Block& block, BlockContext& context);

@@ -96,6 +96,7 @@ class Collector {
     if (row->claim == Claim::IfFree && is_claimed()) return ErrorCode::AxisCommandConflict;
     if (row->claim != Claim::No) block_.axis_command = row->claims_as;
 
+    number_.hundredths = 0;
     const auto group = apply(*row);
     if (!group) return ErrorCode::UnsupportedCommand;
     if (block_.groups.has(*group)) return ErrorCode::ModalGroupViolation;
@@ -159,7 +160,7 @@ class Collector {
     }
     block_.macro = call;
     const bool ends_running_macro =
-        call == MacroCall::End && block_.groups.has(Group::G16) && context_.state.modal_macro;
+        call == MacroCall::End && block_.groups.has(Group::G16) && context_.state.modal_macro.has_value();
     return ends_running_macro ? Group::None : row.group;
   }
 

@@ -6,13 +6,13 @@ namespace kerf::gcode {
 
 namespace {
 
-/// The block before its words: the modal state goes on, unless it is a jog, which has its own motion and feed mode.
+/// The block before its words: the modal state goes on; a jog has its own motion and feed mode. A canned cycle in force
+/// is still checked in jogs (grblHAL gcode.c).
 void start_block(Block& block, const ParserState& state, bool jog) {
   block.modal = state.modal;
   block.jog = jog;
   if (!jog) return;
   block.modal.motion = MotionMode::Linear;
-  block.modal.canned_cycle = false;
   block.modal.feed_mode = FeedMode::UnitsPerMinute;
 }
 
@@ -27,10 +27,10 @@ ErrorCode run(std::span<const Step> steps, Block& block, BlockContext& context) 
 
 ErrorCode read_block(std::string_view line, Block& block, BlockContext& context) {
   BlockBuffer buffer;
-  PreparedText prepared = prepare_text(line, context.rules, context.settings, buffer);
+  PreparedText prepared = prepare_text(line, block.jog, context.rules, context.settings, buffer);
   block.message = std::move(prepared.message);
   if (prepared.demarcates) context.out.push_back(ProgramDemarcation{});
-  if (buffer.length == 0) {
+  if (buffer.length == 0 && !context.rules.runs_empty_blocks) {
     if (!block.message.empty()) context.out.push_back(OperatorMessage{.text = std::move(block.message)});
     block.finished = true;
     return ErrorCode::Ok;
@@ -60,14 +60,15 @@ std::expected<JogMove, ErrorCode> Interpreter::interpret_jog(std::string_view af
   Block block;
   start_block(block, state_, true);
   BlockBuffer buffer;
-  prepare_text(after_dollar_J, *rules_, settings_, buffer);
+  prepare_text(after_dollar_J, true, *rules_, settings_, buffer);
   ErrorCode error = collect_words(buffer.text.data(), block, context);
   if (error == ErrorCode::Ok) error = run(rules_->checks, block, context);
   if (error != ErrorCode::Ok) {
     fail();
     return std::unexpected(error);
   }
-  return JogMove{.target_mm = block.xyz,
+  // G66 ends a line before it becomes a motion.
+  return JogMove{.target_mm = block.finished ? state_.position_mm : block.xyz,
                  .feed = {.rate_mm_per_min = block.f,
                           .no_override = true,
                           .spindle_rpm = state_.spindle_rpm,
@@ -80,7 +81,6 @@ void Interpreter::reset() {
   state_ = {};
   state_.position_mm = old.position_mm;
   if (!rules_->reset_clears_tool) state_.tool = state_.tool_pending = old.tool;
-  if (!rules_->reset_clears_tool) state_.modal_macro = false;
   if (rules_->reset_clears_g92) offsets_.g92 = {};
   if (rules_->reset_clears_tool_length) offsets_.tool_length = {};
   reload_offsets();
@@ -114,7 +114,7 @@ void Interpreter::reload_offsets() {
 void Interpreter::fail() {
   if (!rules_->failure_drops_pending_work) return;
   state_.arriving_tool.reset();
-  state_.modal_macro = false;
+  state_.modal_macro.reset();
 }
 
 }  // namespace kerf::gcode

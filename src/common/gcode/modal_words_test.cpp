@@ -27,9 +27,9 @@ TEST(ModalWords, AtPowerUp) {
 TEST(ModalWords, AllAtOnce) {
   EXPECT_EQ(words_after(Firmware::Grbl, {"F100G0X1M8M3S5N7T3G55G91G20G18G94"}),
             "G0 G55 G18 G20 G91 G94 M3 M8 T3 F2540 S5");
-  EXPECT_EQ(words_after(Firmware::GrblHal, {"G92X1", "G51P2", "G99", "G43.1Z1", "M7", "M8", "M50P0", "M53P0", "M61Q4",
+  EXPECT_EQ(words_after(Firmware::GrblHal, {"G92X1", "G51X2Z3", "G99", "G43.1Z1", "M7", "M8", "M50P0", "M53P0", "M61Q4",
                                             "G59.2", "M4S12.6"}),
-            "G0 G59.2 G92 G17 G21 G90 G94 G40 G43.1 G99 G51:XYZ M4 M7 M8 M50 M53 T4 F0 S13.");
+            "G0 G59.2 G92 G17 G21 G90 G94 G40 G43.1 G99 G51:XZ M4 M7 M8 M50 M53 T4 F0 S13.");
 }
 
 TEST(ModalWords, RabbitNamesProbesOneLessAndCutsSpeeds) {

@@ -110,6 +110,17 @@ struct SavedModalState {
   bool operator==(const SavedModalState&) const = default;
 };
 
+/// A macro that G65, G66 or M98 named: grblHAL has a few built in.
+struct MacroRequest {
+  std::int32_t id = 0;
+  std::uint8_t repeats = 1;
+  bool has_i = false;
+  bool has_q = false;
+  bool has_r = false;
+  float q = 0.0F;
+  bool operator==(const MacroRequest&) const = default;
+};
+
 struct ParserState {
   ModalState modal;
   /// mm/min, or 1/min in inverse time mode.
@@ -128,13 +139,12 @@ struct ParserState {
   AxisValues position_mm{};
   /// Copy of the selected work offset: Grbl reads storage only when the selection changes.
   AxisValues work_offset_mm{};
-  /// G51 centre and factors (grblHAL).
-  AxisValues scale_center_mm{};
+  /// G51 (grblHAL).
   AxisValues scale_factor{1, 1, 1, 1, 1, 1, 1, 1};
   CannedCycle canned;
   std::optional<SavedModalState> saved;
-  /// G66 is in force: motions call a macro, of which there is none.
-  bool modal_macro = false;
+  /// G66 is in force: motions call this macro.
+  std::optional<MacroRequest> modal_macro;
 
   bool operator==(const ParserState&) const = default;
 };

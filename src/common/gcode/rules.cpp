@@ -53,6 +53,7 @@ constexpr CheckStep kGrblHalChecks[] = {
     select_work_offset,
     check_targets_grblhal,
     check_motion_grblhal,
+    forget_unchanged_modes,
     check_unused_words,
     check_jog_words,
 };
@@ -102,6 +103,7 @@ GcodeRules make_rabbit() {
           .checks = kRabbitChecks,
           .acts = kRabbitActs,
           .tool_word_acts_at_once = true,
+          .runs_empty_blocks = true,
           .rapid_wants_inverse_feed = true,
           .g10_checks_l_first = true,
           .coolant_word_always_acts = true,

@@ -93,6 +93,8 @@ struct GcodeRules {
 
   /// Rabbit: T changes the tool while the line is read, even if the line is rejected later.
   bool tool_word_acts_at_once = false;
+  /// Rabbit: a line of nothing but comment is a block without words; it ends N, and F in inverse time.
+  bool runs_empty_blocks = false;
   /// Rabbit: with G93 even G0 wants F.
   bool rapid_wants_inverse_feed = false;
   /// Rabbit: G10 looks at L before P.
