@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include <boost/describe.hpp>
+
 #include "common/vocabulary/firmware.hpp"
 
 namespace kerf::vocabulary {
@@ -19,6 +21,7 @@ enum class BuildOption : std::uint8_t {
   Bluetooth,
   Driver,  ///< depends on the board's driver or a plugin
 };
+BOOST_DESCRIBE_ENUM(BuildOption, Usual, Expressions, CutterCompensation, FileSystem, Bluetooth, Driver)
 
 /// One error or alarm of one firmware, in our own words. `title` fits a headline (no full stop); `text` says the cause
 /// and what to do. Neither contains `|`, `]` or `"`, so the virtual controllers can print them in enumerations.
@@ -29,7 +32,9 @@ struct CodeRow {
   FirmwareSet known_to{};
   bool critical = false;  ///< alarms: only a reset helps
   BuildOption build = BuildOption::Usual;
+  friend constexpr bool operator==(const CodeRow&, const CodeRow&) = default;
 };
+BOOST_DESCRIBE_STRUCT(CodeRow, (), (code, title, text, known_to, critical, build))
 
 /// The row with `code` in one firmware's table (sorted by code).
 [[nodiscard]] const CodeRow* find_code(std::span<const CodeRow> rows, int code);

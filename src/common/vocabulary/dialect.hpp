@@ -6,6 +6,8 @@
 #include <span>
 #include <string_view>
 
+#include <boost/describe.hpp>
+
 #include "common/base/time.hpp"
 #include "common/vocabulary/codes.hpp"
 #include "common/vocabulary/firmware.hpp"
@@ -21,6 +23,7 @@ enum class LineEnding : std::uint8_t {
   CrLfIsOne,              ///< Rabbit 1.6: an LF after a CR is swallowed
   PairedEitherWay,        ///< grblHAL: CRLF and LFCR are one, unless the line was g-code that failed
 };
+BOOST_DESCRIBE_ENUM(LineEnding, EachTerminatorAnswers, CrLfIsOne, PairedEitherWay)
 
 /// What counts towards `line_length` (protocol.md 6.1).
 enum class LineLengthRule : std::uint8_t {
@@ -28,6 +31,7 @@ enum class LineLengthRule : std::uint8_t {
   EveryCharacter,      ///< Rabbit
   AfterLeadingBlanks,  ///< grblHAL
 };
+BOOST_DESCRIBE_ENUM(LineLengthRule, AfterStripping, EveryCharacter, AfterLeadingBlanks)
 
 /// What happens to a line that is too long (protocol.md 6.3).
 enum class LongLineRule : std::uint8_t {
@@ -35,9 +39,11 @@ enum class LongLineRule : std::uint8_t {
   ErrorAtOnceRestIsLine,  ///< Rabbit: error:11 at once, the rest is a new line, which may execute
   RefusedAtEnd,           ///< grblHAL: error:11 at its end, nothing executed
 };
+BOOST_DESCRIBE_ENUM(LongLineRule, SwallowedThenError, ErrorAtOnceRestIsLine, RefusedAtEnd)
 
 /// What becomes of `%`.
 enum class PercentRule : std::uint8_t { Error, Ignored, ProgramToggle };
+BOOST_DESCRIBE_ENUM(PercentRule, Error, Ignored, ProgramToggle)
 
 /// What becomes of a leading `/`.
 enum class BlockDeleteRule : std::uint8_t {
@@ -45,6 +51,7 @@ enum class BlockDeleteRule : std::uint8_t {
   Error,         ///< Rabbit: error:1
   SkippedIfOn,   ///< grblHAL: skipped if block delete is on
 };
+BOOST_DESCRIBE_ENUM(BlockDeleteRule, SlashRemoved, Error, SkippedIfOn)
 
 /// Who deals with `( )` and `;` comments.
 enum class CommentRule : std::uint8_t {
@@ -52,31 +59,39 @@ enum class CommentRule : std::uint8_t {
   RemovedByParser,    ///< Rabbit
   ParsedForMessages,  ///< grblHAL: `(MSG,...)` is printed
 };
+BOOST_DESCRIBE_ENUM(CommentRule, RemovedByReader, RemovedByParser, ParsedForMessages)
 
 /// What becomes of 0x80-0xFF bytes that no realtime command claims (protocol.md 2).
 enum class ExtendedAsciiRule : std::uint8_t {
   Dropped,            ///< Grbl, Rabbit
   KeptInSystemLines,  ///< grblHAL: 0xC0-0xFF stay in `$` and `[` lines and comments while realtime characters do
 };
+BOOST_DESCRIBE_ENUM(ExtendedAsciiRule, Dropped, KeptInSystemLines)
 
 /// Size of a queue as `Bf:` reports it when empty, and as `[OPT:` prints it (0: not printed).
 struct BufferSize {
   int usable{};
   int printed{};
+  friend constexpr bool operator==(const BufferSize&, const BufferSize&) = default;
 };
+BOOST_DESCRIBE_STRUCT(BufferSize, (), (usable, printed))
 
 /// How often a field comes back by itself: every n-th report (protocol.md 3.4).
 struct RefreshCount {
   int busy{};
   int idle{};
+  friend constexpr bool operator==(const RefreshCount&, const RefreshCount&) = default;
 };
+BOOST_DESCRIBE_STRUCT(RefreshCount, (), (busy, idle))
 
 /// Where a machine with this firmware listens by default; 0 where it has no such thing.
 struct DefaultPorts {
   int baud{};
   int telnet{};
   int websocket{};
+  friend constexpr bool operator==(const DefaultPorts&, const DefaultPorts&) = default;
 };
+BOOST_DESCRIBE_STRUCT(DefaultPorts, (), (baud, telnet, websocket))
 
 /// How numbers are printed (protocol.md 3.1, 4.2).
 struct NumberStyle {
@@ -85,7 +100,11 @@ struct NumberStyle {
   int feed_decimals_mm = 0;
   int feed_decimals_inch = 1;
   bool speed_has_trailing_dot = false;  ///< grblHAL prints S in `[GC:]` as `S0.`
+  friend constexpr bool operator==(const NumberStyle&, const NumberStyle&) = default;
 };
+BOOST_DESCRIBE_STRUCT(NumberStyle, (),
+                      (position_decimals_mm, position_decimals_inch, feed_decimals_mm, feed_decimals_inch,
+                       speed_has_trailing_dot))
 
 /// One firmware, as its reference build behaves.
 struct Dialect {

@@ -6,9 +6,12 @@
 #include <cstdint>
 #include <string_view>
 
+#include <boost/describe.hpp>
+
 namespace kerf::vocabulary {
 
 enum class Firmware : std::uint8_t { Unknown, Grbl, Rabbit, GrblHal };
+BOOST_DESCRIBE_ENUM(Firmware, Unknown, Grbl, Rabbit, GrblHal)
 
 /// Bit set of firmwares, for tables.
 enum class FirmwareSet : std::uint8_t { None = 0, Grbl = 1, Rabbit = 2, GrblHal = 4, All = 7 };

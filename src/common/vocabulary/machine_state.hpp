@@ -6,12 +6,15 @@
 #include <span>
 #include <string_view>
 
+#include <boost/describe.hpp>
+
 #include "common/vocabulary/firmware.hpp"
 
 namespace kerf::vocabulary {
 
 /// First word of a status report. `Unknown` is also what we believe before the first report.
 enum class MachineState : std::uint8_t { Unknown, Idle, Run, Hold, Jog, Home, Alarm, Check, Door, Sleep, Tool };
+BOOST_DESCRIBE_ENUM(MachineState, Unknown, Idle, Run, Hold, Jog, Home, Alarm, Check, Door, Sleep, Tool)
 
 /// The word on the wire; "Unknown" for `Unknown`.
 [[nodiscard]] std::string_view name_of(MachineState state);
@@ -25,7 +28,9 @@ struct MachineStateRow {
   std::string_view text;   ///< what the machine does and what gets it out of there
   FirmwareSet known_to{};
   FirmwareSet reads_lines{};  ///< who reads and answers lines in this state (protocol.md 6.6)
+  friend constexpr bool operator==(const MachineStateRow&, const MachineStateRow&) = default;
 };
+BOOST_DESCRIBE_STRUCT(MachineStateRow, (), (state, name, title, text, known_to, reads_lines))
 
 /// All states but `Unknown`, in enumerator order.
 [[nodiscard]] std::span<const MachineStateRow> machine_state_rows();
@@ -37,7 +42,9 @@ struct SubstateRow {
   std::string_view title;
   std::string_view text;
   FirmwareSet known_to{};
+  friend constexpr bool operator==(const SubstateRow&, const SubstateRow&) = default;
 };
+BOOST_DESCRIBE_STRUCT(SubstateRow, (), (state, substate, title, text, known_to))
 
 [[nodiscard]] std::span<const SubstateRow> substate_rows();
 

@@ -4,6 +4,8 @@
 #include <span>
 #include <string_view>
 
+#include <boost/describe.hpp>
+
 #include "common/vocabulary/firmware.hpp"
 
 namespace kerf::vocabulary {
@@ -14,7 +16,9 @@ struct PinRow {
   std::string_view name;
   std::string_view text;
   FirmwareSet known_to{};
+  friend constexpr bool operator==(const PinRow&, const PinRow&) = default;
 };
+BOOST_DESCRIBE_STRUCT(PinRow, (), (letter, name, text, known_to))
 
 [[nodiscard]] std::span<const PinRow> pin_rows();
 /// The sense of `letter` on `firmware`; on an unknown one that of the first row that fits.

@@ -9,6 +9,8 @@
 #include <span>
 #include <string_view>
 
+#include <boost/describe.hpp>
+
 #include "common/vocabulary/firmware.hpp"
 
 namespace kerf::vocabulary {
@@ -65,6 +67,15 @@ enum class Realtime : std::uint8_t {
   Macro6 = 0xB6,
   Macro7 = 0xB7,
 };
+BOOST_DESCRIBE_ENUM(Realtime, Exit, Enquiry, Reboot, SoftReset, Stop, FeedHold, StatusQuery, CycleStart,
+                    StatusQueryAlternate, CycleStartAlternate, FeedHoldAlternate, ParserReport, SafetyDoor, JogCancel,
+                    DebugReport, FullStatus, OptionalStopToggle, SingleBlockToggle, FanToggle, MpgModeToggle,
+                    AutoReportToggle, FeedOverrideReset, FeedOverrideCoarsePlus, FeedOverrideCoarseMinus,
+                    FeedOverrideFinePlus, FeedOverrideFineMinus, RapidOverrideReset, RapidOverrideMedium,
+                    RapidOverrideLow, RapidOverrideExtraLow, SpindleOverrideReset, SpindleOverrideCoarsePlus,
+                    SpindleOverrideCoarseMinus, SpindleOverrideFinePlus, SpindleOverrideFineMinus, SpindleStopToggle,
+                    FloodToggle, MistToggle, PidReport, ToolChangeAcknowledge, ProbeConnectedToggle, Macro0, Macro1,
+                    Macro2, Macro3, Macro4, Macro5, Macro6, Macro7)
 
 /// One realtime byte: who acts on it, and what it does there.
 struct RealtimeRow {
@@ -74,7 +85,9 @@ struct RealtimeRow {
   FirmwareSet known_to{};     ///< who acts on it in a usual build
   FirmwareSet optional_in{};  ///< of those, where a build option, a driver or a plugin decides
   std::optional<Realtime> alternate_of;
+  friend constexpr bool operator==(const RealtimeRow&, const RealtimeRow&) = default;
 };
+BOOST_DESCRIBE_STRUCT(RealtimeRow, (), (byte, name, text, known_to, optional_in, alternate_of))
 
 /// All rows, sorted by byte.
 [[nodiscard]] std::span<const RealtimeRow> realtime_rows();

@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include <boost/describe.hpp>
+
 #include "common/vocabulary/firmware.hpp"
 
 namespace kerf::vocabulary {
@@ -26,6 +28,9 @@ enum class ReportBit : std::uint8_t {
   ReportWhenHoming,
   DistanceToGo,
 };
+BOOST_DESCRIBE_ENUM(ReportBit, MachinePosition, BufferState, LineNumbers, FeedAndSpeed, PinState, WorkOffset, Overrides,
+                    ProbeCoordinates, SyncOnWorkOffsetChange, ParserState, AlarmSubstate, RunSubstate, ReportWhenHoming,
+                    DistanceToGo)
 
 [[nodiscard]] constexpr std::uint32_t mask_of(ReportBit bit) {
   return std::uint32_t{1} << static_cast<unsigned>(bit);
@@ -39,7 +44,9 @@ struct ReportBitRow {
   std::string_view name;
   std::string_view text;
   FirmwareSet known_to{};
+  friend constexpr bool operator==(const ReportBitRow&, const ReportBitRow&) = default;
 };
+BOOST_DESCRIBE_STRUCT(ReportBitRow, (), (bit, name, text, known_to))
 
 /// All rows, in bit order.
 [[nodiscard]] std::span<const ReportBitRow> report_bit_rows();

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include <boost/describe.hpp>
+
 #include "common/vocabulary/axis.hpp"
 #include "common/vocabulary/codes.hpp"
 #include "common/vocabulary/firmware.hpp"
@@ -28,6 +30,7 @@ enum class SettingType : std::uint8_t {
   Password = 8,  ///< read back in plain text on serial and telnet: mask it in logs
   Ipv4 = 9,
 };
+BOOST_DESCRIBE_ENUM(SettingType, Bool, Bitfield, ExclusiveBitfield, Radio, Axes, Integer, Decimal, Text, Password, Ipv4)
 
 /// A limit of a setting as `$ES` prints it (`2.0`, `20`); absent if there is none. For texts it is a length. Reads like
 /// a `std::optional<double>`.
@@ -41,6 +44,7 @@ class SettingLimit {
   [[nodiscard]] constexpr double operator*() const { return value_; }
   [[nodiscard]] constexpr double value() const { return value_; }
   [[nodiscard]] constexpr std::string_view text() const { return text_; }
+  friend constexpr bool operator==(const SettingLimit&, const SettingLimit&) = default;
 
  private:
   // std::from_chars is not constexpr for doubles in g++ 12; limits are short, so digits and one point are enough.
@@ -83,7 +87,11 @@ struct SettingRow {
   bool per_axis = false;
   BuildOption build = BuildOption::Usual;  ///< `Usual` rows are in the reference build's `$$`
   std::string_view path{};                 ///< Rabbit's name, such as "Homing/Enable"; `id` is -1 if that is all it has
+  friend constexpr bool operator==(const SettingRow&, const SettingRow&) = default;
 };
+BOOST_DESCRIBE_STRUCT(SettingRow, (),
+                      (id, group, name, unit, type, format, min, max, default_value, description, reboot, allow_null,
+                       per_axis, build, path))
 
 // Marks for rows of the tables, so that they stay one line.
 [[nodiscard]] constexpr SettingRow per_axis(SettingRow row) {
@@ -108,7 +116,9 @@ struct SettingGroupRow {
   int id{};
   int parent{};
   std::string_view name;
+  friend constexpr bool operator==(const SettingGroupRow&, const SettingGroupRow&) = default;
 };
+BOOST_DESCRIBE_STRUCT(SettingGroupRow, (), (id, parent, name))
 
 [[nodiscard]] std::span<const SettingGroupRow> setting_group_rows();
 

@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include <boost/describe.hpp>
+
 #include "common/vocabulary/firmware.hpp"
 #include "common/vocabulary/report_mask.hpp"
 
@@ -41,6 +43,10 @@ enum class StatusField : std::uint8_t {
   FirmwareName,
   CriticalEvent,
 };
+BOOST_DESCRIBE_ENUM(StatusField, MachinePosition, WorkPosition, Buffer, LineNumber, DistanceToGo, FeedAndSpeed, Feed,
+                    ExtraSpindle, ActiveSpindle, Pins, WorkOffset, WorkCoordinateSystem, Overrides, Accessories,
+                    Scaling, AutoReport, Mpg, Homed, Diameter, Tool, Probe, ToolLengthReference, InputResult,
+                    PluginFields, FirmwareName, CriticalEvent)
 
 struct StatusFieldRow {
   StatusField field{};
@@ -49,7 +55,9 @@ struct StatusFieldRow {
   std::string_view text;    ///< what it tells and when it is sent
   FirmwareSet known_to{};
   std::optional<ReportBit> needs;  ///< the `$10` bit that it depends on
+  friend constexpr bool operator==(const StatusFieldRow&, const StatusFieldRow&) = default;
 };
+BOOST_DESCRIBE_STRUCT(StatusFieldRow, (), (field, name, syntax, text, known_to, needs))
 
 /// All rows, in enumerator order.
 [[nodiscard]] std::span<const StatusFieldRow> status_field_rows();
@@ -59,7 +67,9 @@ struct StatusFieldRow {
 struct PluginFieldRow {
   std::string_view name;
   std::string_view text;
+  friend constexpr bool operator==(const PluginFieldRow&, const PluginFieldRow&) = default;
 };
+BOOST_DESCRIBE_STRUCT(PluginFieldRow, (), (name, text))
 
 [[nodiscard]] std::span<const PluginFieldRow> plugin_field_rows();
 
