@@ -2,14 +2,39 @@
 
 #include <algorithm>
 
-#include "common/base/overloaded.hpp"
+#include "common/base/text.hpp"
 
 namespace kerf::firmware {
 
 namespace {
 
+/// grblHAL reports which axes are scaled when that changes.
+void note_scaling(Board& board) {
+  const AxisValues& factors = board.interpreter.state().scale_factor;
+  if (factors == board.last_scale_factors) return;
+  board.last_scale_factors = factors;
+  board.report.scaling = true;
+}
+
 bool is_motion(const gcode::Action& action) {
   return std::holds_alternative<gcode::LinearMove>(action) || std::holds_alternative<gcode::ArcMove>(action);
+}
+
+/// False for lines that the interpreter leaves before it looks at program flow: comments only, `%`, deleted blocks.
+bool has_words(const Board& board, std::string_view block) {
+  const std::string text = normalised_block(block);
+  if (text.empty() || text == "%") return false;
+  return !(text.front() == '/' && (text.size() == 1 || board.switches.block_delete));
+}
+
+/// Manual tool changes raise Z first, and touch-off modes want more axes homed (grblHAL tool_change.c).
+bool tool_change_needs_homing(const Board& board) {
+  constexpr AxisMask kZ = 0b100;
+  constexpr AxisMask kXyz = 0b111;
+  const auto mode = static_cast<int>(board.settings.number(setting::kToolChangeMode));
+  if (mode < 1 || mode > 3) return false;
+  const AxisMask wanted = mode == 1 ? kZ : kXyz;
+  return (board.homed & wanted) != wanted;
 }
 
 /// Appends steps action by action; knows where each motion begins.
@@ -31,7 +56,8 @@ class BlockSteps {
     at_mm_ = move.target_mm;
   }
   void operator()(const gcode::Dwell& dwell) {
-    steps_.insert(steps_.end(), {Synchronize{}, Dwell{.left = motion::dwell_duration(board_.planner.rules(), dwell.dwell_s)}});
+    steps_.insert(steps_.end(),
+                  {Synchronize{}, Dwell{.left = motion::dwell_duration(board_.planner.rules(), dwell.dwell_s)}});
   }
   void operator()(const gcode::SpindleChange& change) { synchronised(change); }
   void operator()(const gcode::SpindleSpeedChange& change) { synchronised(change); }
@@ -42,8 +68,8 @@ class BlockSteps {
   void operator()(const gcode::OverrideControl& control) { synchronised(control); }
   void operator()(const gcode::ProgramEnd& end) { synchronised(end); }
   void operator()(const gcode::WorkOffsetChange& change) {
-    const bool synchronises = !board_.personality.has_work_offset_sync_bit ||
-                              board_.reports(vocabulary::ReportBit::SyncOnWorkOffsetChange);
+    const bool synchronises =
+        !board_.personality.has_work_offset_sync_bit || board_.reports(vocabulary::ReportBit::SyncOnWorkOffsetChange);
     if (synchronises) steps_.emplace_back(Synchronize{});
     steps_.emplace_back(Perform{.action = change});
   }
@@ -76,13 +102,34 @@ class BlockSteps {
 
 }  // namespace
 
+std::string normalised_block(std::string_view block) {
+  std::string text;
+  bool in_comment = false;
+  for (const char letter : block) {
+    if (letter == ';') break;
+    if (letter == '(') in_comment = true;
+    if (!in_comment && !base::is_blank(letter)) text += base::to_upper(letter);
+    if (letter == ')') in_comment = false;
+  }
+  return text;
+}
+
 std::expected<void, ErrorCode> add_block_steps(Board& board, std::string_view block, Steps& steps) {
   const AxisValues start_mm = board.interpreter.state().position_mm;
   std::vector<gcode::Action> actions;
   if (const auto result = board.interpreter.interpret(block, actions); !result) return result;
+  const auto changes_tool = [](const gcode::Action& action) {
+    return std::holds_alternative<gcode::ToolChange>(action);
+  };
+  if (std::ranges::any_of(actions, changes_tool) && tool_change_needs_homing(board)) {
+    board.interpreter.abort_tool_change();
+    return std::unexpected(ErrorCode::HomingRequired);
+  }
   BlockSteps add{board, start_mm, std::ranges::any_of(actions, is_motion), steps};
   for (const gcode::Action& action : actions) std::visit(add, action);
-  if (board.switches.single_block) steps.insert(steps.end(), {Synchronize{}, HoldForCycleStart{}});
+  note_scaling(board);
+  if (board.switches.single_block && has_words(board, block))
+    steps.insert(steps.end(), {Synchronize{}, HoldForCycleStart{}});
   return {};
 }
 

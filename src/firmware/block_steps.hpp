@@ -2,6 +2,7 @@
 // From a block of G-code to steps.
 
 #include <expected>
+#include <string>
 #include <string_view>
 
 #include "firmware/board.hpp"
@@ -11,5 +12,8 @@ namespace kerf::firmware {
 
 /// Interprets `block` and appends what it asks for; without the answer. A refused block appends nothing.
 std::expected<void, ErrorCode> add_block_steps(Board& board, std::string_view block, Steps& steps);
+
+/// A block in capitals, without blanks and comments (grblHAL gc_normalize_block).
+[[nodiscard]] std::string normalised_block(std::string_view block);
 
 }  // namespace kerf::firmware

@@ -120,6 +120,8 @@ struct Board {
   Switches switches;
   ReportDebts report;
   std::deque<MotionMessage> motion_messages;
+  /// G51 factors when the status report last told which axes are scaled.
+  AxisValues last_scale_factors = gcode::ParserState{}.scale_factor;
   /// Blocks planned so far; a block's number is its motion::PathLine::source_line.
   std::uint32_t blocks_planned = 0;
   /// Targets of the blocks that may still be queued, by number.

@@ -151,8 +151,7 @@ void Cycle::come_to_rest() {
 
 void Cycle::end_motion() {
   moving_ = false;
-  const bool tool_waits = board_.interpreter.state().tool_change_pending;
-  board_.state = tool_waits || jogging_in_tool_change_ ? MachineState::Tool : MachineState::Idle;
+  board_.state = jogging_in_tool_change_ ? MachineState::Tool : MachineState::Idle;
   jogging_in_tool_change_ = false;
 }
 
@@ -181,8 +180,9 @@ void Cycle::finish_stop() {
   jogging_in_tool_change_ = false;
   using vocabulary::AlarmCode;
   const auto code = static_cast<AlarmCode>(board_.alarm);
-  const bool stays = board_.state == MachineState::Alarm &&
-                     (code == AlarmCode::HomingRequired || code == AlarmCode::LimitsEngaged || code == AlarmCode::ProbeProtect);
+  const bool stays =
+      board_.state == MachineState::Alarm &&
+      (code == AlarmCode::HomingRequired || code == AlarmCode::LimitsEngaged || code == AlarmCode::ProbeProtect);
   if (stays) return;
   board_.state = MachineState::Idle;
   board_.alarm = 0;
@@ -236,8 +236,7 @@ void Cycle::restore_next() {
     wanted.spindle = to_restore_.spindle;
     wanted.programmed_rpm = to_restore_.programmed_rpm;
     board_.set_accessories(wanted);
-    restored_at_ =
-        board_.now + base::from_seconds(delay_s(board_, setting::kDoorSpindleDelay, kSpindleRestoreDelay_s));
+    restored_at_ = board_.now + base::from_seconds(delay_s(board_, setting::kDoorSpindleDelay, kSpindleRestoreDelay_s));
     return;
   }
   if (restoring_ != Restoring::Coolant && (to_restore_.flood || to_restore_.mist)) {
@@ -245,8 +244,7 @@ void Cycle::restore_next() {
     wanted.flood = to_restore_.flood;
     wanted.mist = to_restore_.mist;
     board_.set_accessories(wanted);
-    restored_at_ =
-        board_.now + base::from_seconds(delay_s(board_, setting::kDoorCoolantDelay, kCoolantRestoreDelay_s));
+    restored_at_ = board_.now + base::from_seconds(delay_s(board_, setting::kDoorCoolantDelay, kCoolantRestoreDelay_s));
     return;
   }
   restoring_ = Restoring::No;

@@ -48,7 +48,8 @@ class Cycle {
   /// Motion has come to rest and nothing is queued.
   [[nodiscard]] bool is_finished() const;
 
-  /// Lets motion and delays go on to `board.now`; contacts and ends are kept for take_contacts() and system_motion_ended().
+  /// Lets motion and delays go on to `board.now`; contacts and ends are kept for take_contacts() and
+  /// system_motion_ended().
   void advance();
   [[nodiscard]] Instant next_deadline() const;
   [[nodiscard]] std::vector<motion::ThresholdCrossed> take_contacts() { return std::exchange(contacts_, {}); }

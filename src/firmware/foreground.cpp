@@ -110,10 +110,10 @@ void Foreground::begin_line(const gcode::ReadLine& line) {
     const auto result = commands_.execute(line.text.substr(1), steps_);
     if (result) return;
     if (result.error() == ErrorCode::LimitsEngaged) {
-      steps_.insert(steps_.end(), {RaiseAlarm{.code = AlarmCode::LimitsEngaged},
-                                   Say{.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(
-                                                                         board_.personality.firmware,
-                                                                         FeedbackText::CheckLimits)}}}});
+      steps_.insert(steps_.end(),
+                    {RaiseAlarm{.code = AlarmCode::LimitsEngaged},
+                     Say{.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(
+                                                           board_.personality.firmware, FeedbackText::CheckLimits)}}}});
     }
     steps_.emplace_back(Answer{.code = result.error()});
   } else if (locks_gcode()) {
@@ -176,11 +176,10 @@ void Foreground::enter_critical_alarm(AlarmCode code) {
   const auto text = code == AlarmCode::EmergencyStop && board_.personality.start.has_homing_alarm
                         ? FeedbackText::EmergencyStop
                         : FeedbackText::ResetToContinue;
-  steps_.insert(steps_.end(),
-                {RaiseAlarm{.code = code},
-                 Say{.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(
-                                                       board_.personality.firmware, text)}}},
-                 EnterCritical{}});
+  steps_.insert(steps_.end(), {RaiseAlarm{.code = code},
+                               Say{.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(
+                                                                     board_.personality.firmware, text)}}},
+                               EnterCritical{}});
 }
 
 void Foreground::abandon_line() {

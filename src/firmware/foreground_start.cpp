@@ -18,7 +18,8 @@ constexpr unsigned kClearFeedOverride = 3;
 constexpr unsigned kHardLimitsStrict = 1;
 
 Say saying(const Board& board, FeedbackText text) {
-  return {.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(board.personality.firmware, text)}}};
+  return {.message =
+              protocol::Feedback{.text = std::string{vocabulary::feedback_text(board.personality.firmware, text)}}};
 }
 
 }  // namespace
@@ -74,9 +75,8 @@ bool Foreground::operator()(Restart& /*step*/) {
   if (board_.state != MachineState::Alarm && board_.state != MachineState::Sleep) board_.state = MachineState::Idle;
 
   const vocabulary::Dialect& dialect = board_.personality.dialect();
-  board_.say(protocol::Welcome{.firmware = dialect.firmware,
-                               .version = std::string{dialect.version},
-                               .line = std::string{dialect.welcome}});
+  board_.say(protocol::Welcome{
+      .firmware = dialect.firmware, .version = std::string{dialect.version}, .line = std::string{dialect.welcome}});
   insert_front({CheckAtStart{}});
   return true;
 }
@@ -135,8 +135,8 @@ bool Foreground::operator()(RunStartupLines& /*step*/) {
   if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
   Steps blocks;
   for (const std::string& line : board_.stored.startup_lines) {
-    const auto parts = board_.personality.start.startup_blocks_split ? base::split(line, '|')
-                                                                     : std::vector<std::string_view>{line};
+    const auto parts =
+        board_.personality.start.startup_blocks_split ? base::split(line, '|') : std::vector<std::string_view>{line};
     for (const std::string_view block : parts) {
       if (!block.empty()) blocks.emplace_back(RunStartupBlock{.block = std::string{block}});
     }

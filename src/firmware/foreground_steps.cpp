@@ -68,15 +68,15 @@ bool Foreground::operator()(PlanArc& step) {
     if (!check_travel(move.target_mm)) return true;
     if (board_.state == MachineState::Check) return true;
     const gcode::PlaneAxes axes = gcode::axes_of(move.plane);
-    const motion::Arc arc = {.start_mm = step.start_mm,
-                             .target_mm = move.target_mm,
-                             .center_offset_mm = move.center_offset_mm,
-                             .radius_mm = move.radius_mm,
-                             .plane_axes = {static_cast<std::uint8_t>(axes.first),
-                                            static_cast<std::uint8_t>(axes.second),
-                                            static_cast<std::uint8_t>(axes.linear)},
-                             .clockwise = move.clockwise,
-                             .turns = move.turns};
+    const motion::Arc arc = {
+        .start_mm = step.start_mm,
+        .target_mm = move.target_mm,
+        .center_offset_mm = move.center_offset_mm,
+        .radius_mm = move.radius_mm,
+        .plane_axes = {static_cast<std::uint8_t>(axes.first), static_cast<std::uint8_t>(axes.second),
+                       static_cast<std::uint8_t>(axes.linear)},
+        .clockwise = move.clockwise,
+        .turns = move.turns};
     step.chords.emplace(arc, board_.planner.rules(), board_.planner.settings());
   }
   gcode::Feed feed = move.feed;
@@ -247,7 +247,8 @@ bool Foreground::finish_probe(const AxisSteps& contact, bool touched, const gcod
   gcode::Offsets& offsets = board_.interpreter.offsets();
   offsets.probe = board_.to_mm(contact);
   offsets.probe_succeeded = touched;
-  const bool tells = !board_.personality.status.counts_changes || board_.reports(vocabulary::ReportBit::ProbeCoordinates);
+  const bool tells =
+      !board_.personality.status.counts_changes || board_.reports(vocabulary::ReportBit::ProbeCoordinates);
   Steps next;
   if (!touched && !move.no_error) next.emplace_back(RaiseAlarm{.code = AlarmCode::ProbeFailContact});
   if (tells) next.emplace_back(SayProbe{});

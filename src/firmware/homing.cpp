@@ -87,8 +87,8 @@ void Homing::end_move() {
   moving_ = false;
   board_.executor.reset(board_.now);
   board_.planner.clear();
-  settled_at_ = board_.now + std::chrono::milliseconds{
-                                 static_cast<std::int64_t>(board_.settings.number(setting::kHomingDebounce))};
+  settled_at_ = board_.now +
+                std::chrono::milliseconds{static_cast<std::int64_t>(board_.settings.number(setting::kHomingDebounce))};
 }
 
 Homing::Outcome Homing::advance() {

@@ -15,7 +15,8 @@ namespace {
 std::string letters_of(AxisMask axes, int count) {
   std::string letters;
   for (int axis = 0; axis < count; ++axis) {
-    if (((axes >> static_cast<unsigned>(axis)) & 1U) != 0) letters += vocabulary::kAxisLetters[static_cast<std::size_t>(axis)];
+    if (((axes >> static_cast<unsigned>(axis)) & 1U) != 0)
+      letters += vocabulary::kAxisLetters[static_cast<std::size_t>(axis)];
   }
   return letters;
 }
@@ -89,12 +90,12 @@ void Listing::help_topics() {
   line("Help topics:");
   line(" Commands");
   line(" Settings");
+  std::set<std::string, std::less<>> names;
+  const std::set<int> in_use = groups_in_use();
   for (const auto& group : vocabulary::setting_group_rows()) {
-    const bool in_use = std::ranges::any_of(board_.settings.slots(), [&](const SettingsStore::Slot& slot) {
-      return vocabulary::group_of(slot.match) == group.id;
-    });
-    if (in_use) line(" " + std::string{group.name});
+    if (group.id != 0 && in_use.contains(group.id)) names.emplace(group.name);
   }
+  for (const std::string& name : names) line(" " + name);
 }
 
 void Listing::settings() {
@@ -117,7 +118,8 @@ void Listing::changed_settings() {
   for (const auto& slot : board_.settings.slots()) {
     const std::string_view usual = slot.match.row->default_value;
     if (slot.text == usual) continue;
-    board_.say(protocol::SettingValue{.id = path_of(slot), .value = slot.text + "(Default=" + std::string{usual} + ")"});
+    board_.say(
+        protocol::SettingValue{.id = path_of(slot), .value = slot.text + "(Default=" + std::string{usual} + ")"});
   }
 }
 
@@ -255,12 +257,17 @@ bool Listing::one_error(int code) {
   return true;
 }
 
-void Listing::setting_groups() {
+std::set<int> Listing::groups_in_use() const {
   std::set<int> in_use = {0};
   for (const auto& slot : board_.settings.slots()) in_use.insert(vocabulary::group_of(slot.match));
   for (const auto& group : vocabulary::setting_group_rows()) {
     if (in_use.contains(group.id)) in_use.insert(group.parent);
   }
+  return in_use;
+}
+
+void Listing::setting_groups() {
+  const std::set<int> in_use = groups_in_use();
   for (const auto& group : vocabulary::setting_group_rows()) {
     if (!in_use.contains(group.id)) continue;
     board_.say(protocol::SettingGroupRow{.id = group.id, .parent = group.parent, .name = std::string{group.name}});
@@ -301,10 +308,10 @@ void Listing::spindles(bool for_machines) {
     line("0 - simulated PWM spindle");
     return;
   }
-  board_.say(protocol::BuildRow{
-      .key = "SPINDLE",
-      .value = "0|0|0|*DRV|simulated PWM spindle|" + base::to_fixed(board_.settings.number(setting::kSpindleMin), 1) +
-               "," + base::to_fixed(board_.settings.number(setting::kSpindleMax), 1)});
+  board_.say(protocol::BuildRow{.key = "SPINDLE",
+                                .value = "0|0|0|*DRV|simulated PWM spindle|" +
+                                         base::to_fixed(board_.settings.number(setting::kSpindleMin), 1) + "," +
+                                         base::to_fixed(board_.settings.number(setting::kSpindleMax), 1)});
 }
 
 }  // namespace kerf::firmware

@@ -2,6 +2,7 @@
 // What `$` queries list: settings, codes, build information, help (protocol.md 4.5, 4.6, 5).
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -42,6 +43,7 @@ class Listing {
  private:
   void help_topics();
   void line(std::string text);
+  [[nodiscard]] std::set<int> groups_in_use() const;
   [[nodiscard]] std::string option_letters() const;
   [[nodiscard]] std::vector<std::string> new_options() const;
   [[nodiscard]] bool titles() const { return board_.personality.firmware != vocabulary::Firmware::GrblHal; }

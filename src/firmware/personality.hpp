@@ -119,10 +119,10 @@ class SettingsStore;
 
 /// Reads a `$` line (without the `$`) as one firmware does; its order of checks decides which error is answered.
 using CommandParser = std::expected<ParsedCommand, ErrorCode> (*)(const Personality&, std::string_view line,
-                                                                 MachineState state, bool critical);
+                                                                  MachineState state, bool critical);
 /// The value that `text` gives to a setting, as one firmware checks it.
 using SettingCheck = std::expected<std::string, ErrorCode> (*)(const SettingsStore&, const vocabulary::SettingMatch&,
-                                                              std::string_view text);
+                                                               std::string_view text);
 
 /// What the machine remembers of a homing cycle.
 struct HomingRules {

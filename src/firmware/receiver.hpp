@@ -23,9 +23,10 @@ class Receiver {
   /// How an arriving byte is treated.
   enum class Fate : std::uint8_t { Realtime, Buffered, Lost };
 
-  /// What the line being read does to bytes that are no plain text (grblHAL protocol.c protocol_enqueue_realtime_command).
+  /// What the line being read does to bytes that are no plain text (grblHAL protocol.c
+  /// protocol_enqueue_realtime_command).
   struct LineContext {
-    bool keeps_high_bytes = false;         ///< DEL and bytes from 0xC0 are text
+    bool keeps_high_bytes = false;          ///< DEL and bytes from 0xC0 are text
     bool keeps_printable_commands = false;  ///< `?!~` are text
   };
 

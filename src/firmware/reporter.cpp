@@ -1,5 +1,6 @@
 #include "firmware/reporter.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -19,8 +20,7 @@ constexpr std::array<std::string_view, 9> kWorkOffsets = {"G54", "G55",   "G56",
 
 std::optional<int> substate_of(const Board& board) {
   switch (board.state) {
-    case MachineState::Hold:
-      return board.hold_complete ? vocabulary::kHoldComplete : vocabulary::kHoldDecelerating;
+    case MachineState::Hold: return board.hold_complete ? vocabulary::kHoldComplete : vocabulary::kHoldDecelerating;
     case MachineState::Door:
       switch (board.door) {
         case DoorPhase::Closed: return vocabulary::kDoorClosedReady;
@@ -91,16 +91,28 @@ void Reporter::say_status(std::size_t rx_free) {
 }
 
 void Reporter::say_changed_parser_state() {
-  std::vector<std::string> words = parser_state_words(board_);
-  if (words == last_words_) return;
-  last_words_ = std::move(words);
-  board_.say(protocol::ParserState{.words = last_words_});
+  // grblHAL report.c looks at one kind of change after the other, so that two at once are told by two reports.
+  const gcode::ParserState& state = board_.interpreter.state();
+  const TrackedValues values = {.feed_rate = state.feed_rate, .spindle_rpm = state.spindle_rpm, .tool = state.tool};
+  const bool g92_active = std::ranges::any_of(board_.interpreter.offsets().g92, [](float mm) { return mm != 0.0F; });
+  if (values != last_values_) {
+    last_values_ = values;
+  } else if (g92_active != last_g92_active_) {
+    last_g92_active_ = g92_active;
+  } else if (last_modal_ != state.modal) {
+    last_modal_ = state.modal;
+  } else {
+    return;
+  }
+  say_parser_state();
 }
 
 StatusReport Reporter::status(std::size_t rx_free) {
   const bool masked = is_grblhal_like(board_);
   StatusReport report;
-  report.state = board_.state;
+  // grblHAL report.c: motion that a pending tool change still waits for is shown as Tool.
+  const bool tool_waits = board_.state == MachineState::Run && board_.interpreter.state().tool_change_pending;
+  report.state = tool_waits ? MachineState::Tool : board_.state;
   report.substate = substate_of(board_);
   add_position(report);
   if (board_.reports(ReportBit::BufferState)) {
@@ -193,8 +205,7 @@ void Reporter::add_counted_grbl(StatusReport& report) {
   if (debts.work_offset_counter > 0) {
     --debts.work_offset_counter;
   } else {
-    debts.work_offset_counter =
-        (is_busy() ? dialect.work_offset_refresh.busy : dialect.work_offset_refresh.idle) - 1;
+    debts.work_offset_counter = (is_busy() ? dialect.work_offset_refresh.busy : dialect.work_offset_refresh.idle) - 1;
     if (debts.override_counter == 0) debts.override_counter = 1;
     report.work_offset = in_report_units(board_.interpreter.work_coordinate_offset());
   }
@@ -302,8 +313,7 @@ void Reporter::say_tool_length_offset() {
 
 void Reporter::say_probe() {
   const gcode::Offsets& offsets = board_.interpreter.offsets();
-  board_.say(
-      protocol::ProbeResult{.values = in_report_units(offsets.probe), .success = offsets.probe_succeeded});
+  board_.say(protocol::ProbeResult{.values = in_report_units(offsets.probe), .success = offsets.probe_succeeded});
 }
 
 void Reporter::say_parameters() {

@@ -2,6 +2,8 @@
 // Status reports and the other things a controller says about its state.
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +45,16 @@ class Reporter {
   [[nodiscard]] bool is_busy() const;
 
   Board& board_;
-  std::vector<std::string> last_words_;
+  /// What the last pushed parser state said.
+  struct TrackedValues {
+    float feed_rate = 0;
+    float spindle_rpm = 0;
+    std::uint32_t tool = 0;
+    bool operator==(const TrackedValues&) const = default;
+  };
+  TrackedValues last_values_;
+  bool last_g92_active_ = false;
+  std::optional<gcode::ModalState> last_modal_;
 };
 
 }  // namespace kerf::firmware

@@ -22,7 +22,7 @@ class SettingsStore {
   struct Slot {
     vocabulary::SettingMatch match;
     std::string text{};  ///< as `$$` prints it
-    double number = 0;  ///< of `text`; 0 for texts
+    double number = 0;   ///< of `text`; 0 for texts
   };
 
   explicit SettingsStore(const Personality& personality);

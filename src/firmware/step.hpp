@@ -94,10 +94,10 @@ struct FinishHoming {
   vocabulary::AxisMask asked = 0;  ///< 0: all
 };
 
-using Step = std::variant<Answer, Say, SayStatus, SayProbe, PlanMove, PlanArc, PlanJog, Synchronize, Dwell, Freeze,
-                          Perform, HoldForCycleStart, Probe, HomeAxes, RaiseAlarm, StopAtSoftLimit, EnterCritical,
-                          Restart, CheckAtStart, RunStartupLines, RunStartupBlock, EnterSleep, EnterToolChange,
-                          FinishHoming>;
+using Step =
+    std::variant<Answer, Say, SayStatus, SayProbe, PlanMove, PlanArc, PlanJog, Synchronize, Dwell, Freeze, Perform,
+                 HoldForCycleStart, Probe, HomeAxes, RaiseAlarm, StopAtSoftLimit, EnterCritical, Restart, CheckAtStart,
+                 RunStartupLines, RunStartupBlock, EnterSleep, EnterToolChange, FinishHoming>;
 
 /// What the foreground is waiting for, to be looked at.
 enum class WaitingFor : std::uint8_t {

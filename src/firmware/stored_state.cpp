@@ -47,7 +47,8 @@ Result read_offset_line(StoredState& state, std::string_view line) {
     return std::unexpected(StoredStateError::Reason::UnknownLine);
   }
   const std::string_view name = line.substr(1, colon - 1);
-  if (std::ranges::find(kOffsetNames, name) == kOffsetNames.end()) return std::unexpected(StoredStateError::Reason::UnknownLine);
+  if (std::ranges::find(kOffsetNames, name) == kOffsetNames.end())
+    return std::unexpected(StoredStateError::Reason::UnknownLine);
   std::vector<double> values;
   for (const std::string_view word : base::split(line.substr(colon + 1, line.size() - colon - 2), ',')) {
     const auto value = base::parse_decimal(word);

@@ -21,19 +21,6 @@ bool is_grblhal(const Board& board) {
   return board.personality.firmware == vocabulary::Firmware::GrblHal;
 }
 
-/// What is stored of a startup line: capitals, no blanks, no comments (grblHAL gc_normalize_block).
-std::string normalised(std::string_view line) {
-  std::string text;
-  bool in_comment = false;
-  for (const char letter : line) {
-    if (letter == ';') break;
-    if (letter == '(') in_comment = true;
-    if (!in_comment && !base::is_blank(letter)) text += base::to_upper(letter);
-    if (letter == ')') in_comment = false;
-  }
-  return text;
-}
-
 }  // namespace
 
 bool homing_is_required(const Board& board) {
@@ -161,6 +148,7 @@ SystemCommands::Result SystemCommands::write_setting(const ParsedCommand& comman
   if (const Result written = board_.settings.write(command.key, command.value); !written) return written;
   board_.apply_settings();
   board_.store_settings();
+  if (command.key == std::to_string(setting::kReportInches)) board_.owe_work_offset();
   if (!is_grblhal(board_)) return {};
 
   // grblHAL settings.c: a position keeps its millimetres, a new travel makes its axis unhomed, and a new tool change
@@ -254,7 +242,8 @@ SystemCommands::Result SystemCommands::home(const ParsedCommand& command, Steps&
       steps.insert(steps.end(), {SayStatus{}, Freeze{.duration = kHomingAnnouncement}});
     }
   }
-  steps.insert(steps.end(), {HomeAxes{.cycles = {cycles.begin(), cycles.end()}}, FinishHoming{.asked = asked}, Answer{}});
+  steps.insert(steps.end(),
+               {HomeAxes{.cycles = {cycles.begin(), cycles.end()}}, FinishHoming{.asked = asked}, Answer{}});
   return {};
 }
 
@@ -285,13 +274,13 @@ SystemCommands::Result SystemCommands::store_startup_line(const ParsedCommand& c
   constexpr StateSet kStoring = {MachineState::Idle, MachineState::Alarm, MachineState::Check};
   if (!command.value.empty() && !kStoring.contains(board_.state)) return std::unexpected(ErrorCode::IdleError);
 
-  const std::string line = normalised(command.value);
+  const std::string line = normalised_block(command.value);
   if (line.size() > static_cast<std::size_t>(board_.personality.dialect().stored_line_length)) {
     return std::unexpected(ErrorCode::LineTooLong);
   }
   // The line is carried out once, to see that it is valid (gnea/grbl system.c; grblHAL system.c).
-  const auto blocks = board_.personality.start.startup_blocks_split ? base::split(line, '|')
-                                                                    : std::vector<std::string_view>{line};
+  const auto blocks =
+      board_.personality.start.startup_blocks_split ? base::split(line, '|') : std::vector<std::string_view>{line};
   for (const std::string_view block : blocks) {
     if (block.empty()) continue;
     if (const Result added = add_block_steps(board_, block, steps); !added) return added;

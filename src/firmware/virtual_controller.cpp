@@ -23,9 +23,7 @@ struct VirtualController::Parts {
         foreground(board, cycle, receiver, reporter),
         realtime(board, cycle, foreground, receiver, reporter) {}
 
-  [[nodiscard]] Instant next_deadline() const {
-    return std::min(cycle.next_deadline(), foreground.next_deadline());
-  }
+  [[nodiscard]] Instant next_deadline() const { return std::min(cycle.next_deadline(), foreground.next_deadline()); }
 
   /// Motion, then the main loop, at one instant.
   void live_at(Instant at) {

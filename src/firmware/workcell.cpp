@@ -20,19 +20,20 @@ bool has(AxisMask mask, std::size_t axis) {
 }  // namespace
 
 void Workcell::apply(const WorkcellEvent& event) {
-  std::visit(base::Overloaded{
-                 [&](const InputChanged& change) { inputs_.at(static_cast<std::size_t>(change.input)) = change.active; },
-                 [&](const LimitHeld& limit) {
-                   const AxisMask bit = vocabulary::mask_of(limit.axis);
-                   held_limits_ = static_cast<AxisMask>(limit.active ? held_limits_ | bit : held_limits_ & ~bit);
-                 },
-                 [&](const HomingSwitchMoved& moved) {
-                   homing_switches_.at(vocabulary::index_of(moved.axis)) = {.at_travel_end = false,
-                                                                             .distance_mm = moved.distance_mm};
-                 },
-                 [&](const ProbeSurfaceMoved& moved) { surface_mm_ = moved.z_mm; },
-             },
-             event);
+  std::visit(
+      base::Overloaded{
+          [&](const InputChanged& change) { inputs_.at(static_cast<std::size_t>(change.input)) = change.active; },
+          [&](const LimitHeld& limit) {
+            const AxisMask bit = vocabulary::mask_of(limit.axis);
+            held_limits_ = static_cast<AxisMask>(limit.active ? held_limits_ | bit : held_limits_ & ~bit);
+          },
+          [&](const HomingSwitchMoved& moved) {
+            homing_switches_.at(vocabulary::index_of(moved.axis)) = {.at_travel_end = false,
+                                                                     .distance_mm = moved.distance_mm};
+          },
+          [&](const ProbeSurfaceMoved& moved) { surface_mm_ = moved.z_mm; },
+      },
+      event);
 }
 
 std::optional<std::int32_t> Workcell::homing_switch_step(std::size_t axis, const Geometry& geometry) const {

@@ -167,7 +167,7 @@ void append_modal_words(const ParserState& state, const Offsets& offsets, const 
   out += std::to_string(state.tool);
   // Rabbit prints with printf and forgets to convert F to inches.
   const bool converts = style.inches && !rabbit;
-  add_number('F', converts ? state.feed_rate / kMmPerInch : state.feed_rate, style.inches ? 1 : 0, rabbit, words);
+  add_number('F', converts ? state.feed_rate / kMmPerInch : state.feed_rate, style.inches && !all_groups ? 1 : 0, rabbit, words);
   add_number('S', rabbit ? std::trunc(state.spindle_rpm) : state.spindle_rpm, 0, false, words);
   if (all_groups) out += '.';
 }

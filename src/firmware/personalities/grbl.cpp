@@ -1,7 +1,6 @@
 // Grbl 1.1h as its reference build behaves (gnea/grbl; protocol.md).
 
 #include "firmware/personalities/personalities.hpp"
-
 #include "firmware/settings_store.hpp"
 #include "firmware/system_commands.hpp"
 

@@ -1,7 +1,6 @@
 // grblHAL at compatibility level 0, as its simulator build behaves (grblHAL/core; protocol.md).
 
 #include "firmware/personalities/personalities.hpp"
-
 #include "firmware/settings_store.hpp"
 #include "firmware/system_commands.hpp"
 

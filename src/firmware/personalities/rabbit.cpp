@@ -1,7 +1,6 @@
 // Rabbit GRBL 1.6.0 (SourceRabbit/RabbitGRBL; protocol.md).
 
 #include "firmware/personalities/personalities.hpp"
-
 #include "firmware/settings_store.hpp"
 #include "firmware/system_commands.hpp"
 
@@ -18,9 +17,7 @@ constexpr CommandRow kCommands[] = {
     {.name = "+", .command = Command::ListNamedSettings, .states = kNotInCycle},
     {.name = "G", .command = Command::ParserState},
     {.name = "#", .command = Command::Parameters, .states = kIdleOrAlarm},
-    {.name = "C",
-     .command = Command::CheckMode,
-     .states = {MachineState::Idle, MachineState::Check}},
+    {.name = "C", .command = Command::CheckMode, .states = {MachineState::Idle, MachineState::Check}},
     {.name = "X", .command = Command::Unlock},
     {.name = "H", .command = Command::Home, .states = kIdleOrAlarm},
     {.name = "HX", .command = Command::Home, .states = kIdleOrAlarm, .prefix = "X"},
