@@ -53,13 +53,11 @@ World::World(const WorldOptions& options)
 }
 
 void World::open() {
-  if (options_.opening_resets) {
-    restart_controller();
-  } else {
-    static_cast<void>(controller_->take_outbox());
-  }
+  // What was said before nobody heard.
+  static_cast<void>(controller_->take_outbox());
   linked_ = true;
   session_.on_open(now_);
+  if (options_.opening_resets) restart_controller();
   settle();
 }
 

@@ -183,7 +183,7 @@ void Session::reset_controller(Instant now) {
 
 void Session::settle_everything(Instant now) {
   follow_handshake(now);
-  pump(now);
+  // First what the job says: after a refusal not one line more may leave.
   follow_job(now);
   pump(now);
 }
@@ -297,6 +297,7 @@ Outbox Session::take_outbox() {
 }
 
 SessionPhase Session::phase() const {
+  if (reset_pending_until_) return SessionPhase::Connecting;
   switch (handshake_.stage()) {
     case HandshakeStage::Closed: return SessionPhase::Closed;
     case HandshakeStage::PendantWait:

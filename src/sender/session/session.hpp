@@ -113,7 +113,7 @@ class Session {
   void strike_out();
   void tell(Event event) { outbox_.events.push_back(std::move(event)); }
   void send_byte(vocabulary::Realtime byte) { outbox_.realtime += static_cast<char>(byte); }
-  [[nodiscard]] bool is_ready() const { return handshake_.stage() == machine::HandshakeStage::Ready; }
+  [[nodiscard]] bool is_ready() const { return phase() == SessionPhase::Ready; }
   [[nodiscard]] bool has_job() const { return job_ && !job::is_final(job_->state().phase); }
 
   SessionOptions options_;
