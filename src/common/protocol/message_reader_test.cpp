@@ -9,6 +9,7 @@ namespace {
 
 std::vector<std::string> raws_of(const std::vector<ReceivedMessage>& messages) {
   std::vector<std::string> raws;
+  raws.reserve(messages.size());
   for (const ReceivedMessage& message : messages) raws.push_back(message.raw);
   return raws;
 }

@@ -109,7 +109,7 @@ std::optional<SettingMatch> find_setting(std::span<const SettingRow> rows, std::
 }
 
 std::string full_name(const SettingMatch& match) {
-  const std::string name{match.row->name};
+  std::string name{match.row->name};
   if (!match.row->per_axis) return name;
   return kAxisLetters[static_cast<std::size_t>(match.axis)] + name;
 }
