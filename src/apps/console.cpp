@@ -1,6 +1,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <deque>
 #include <filesystem>
@@ -70,11 +71,11 @@ class Console {
 
   void on(const session::ControllerFound& found) {
     if (input_) return;
-    fmt::print("{}\n", found.sentence);
+    show(found.sentence);
     begin();
   }
   void on(const session::ControllerBusy& busy) {
-    if (!input_) fmt::print("{} You may watch and use the realtime keys.\n", busy.sentence);
+    show(busy.sentence + (input_ ? "" : " You may watch and use the realtime keys."));
     begin();
   }
   void on(const session::HandshakeFailed& failed) {
@@ -88,7 +89,7 @@ class Console {
   void on(const session::LineReceived& line) {
     if (!input_ || (line.answers && line.answers->purpose != streaming::Purpose::Operator)) return;
     std::visit([&](const auto& message) { show_message(message, line.raw); }, line.message);
-    if (has_ended_) wait_for_last_words();
+    if (has_ended_ && !std::holds_alternative<protocol::StatusReport>(line.message)) wait_for_last_words();
   }
   void on(const session::LineRefused& refused) {
     if (refused.purpose == streaming::Purpose::Operator) show("    " + refused.refusal.meaning);
@@ -171,6 +172,7 @@ class Console {
       input_->print(line);
     } else {
       fmt::print("{}\n", line);
+      std::fflush(stdout);
     }
   }
 

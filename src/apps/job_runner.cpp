@@ -83,7 +83,8 @@ void JobRunner::on(const session::ControllerBusy& busy) {
 }
 
 void JobRunner::on(const session::HandshakeFailed& failed) {
-  fail(failed.sentence, ExitStatus::NoConnection);
+  // on_lost() says better what became of the link.
+  if (failed.failure != session::HandshakeFailure::LinkLost) fail(failed.sentence, ExitStatus::NoConnection);
 }
 
 void JobRunner::on(const session::LineReceived& line) {

@@ -56,7 +56,7 @@ class TerminalView final : public JobView {
 
   void progressed(const job::JobState& job, const machine::Snapshot& snapshot) override {
     if (!pace_.is_due()) return;
-    bar_ = progress_bar(job, snapshot, terminal_columns(), utf8_);
+    compose(job, snapshot);
     draw();
   }
 
@@ -64,12 +64,9 @@ class TerminalView final : public JobView {
   void asked(std::string_view question) override { line(question); }
 
   void ended(const job::JobState& job, const machine::Snapshot& snapshot, ExitStatus status) override {
-    if (status == ExitStatus::Done) {
-      bar_ = progress_bar(job, snapshot, terminal_columns(), utf8_);
-      draw();
-      fmt::print("\n");
-      drawn_ = false;
-    }
+    compose(job, snapshot);
+    draw();
+    is_drawn_ = false;  // the last state stays to be seen
     finish(summary_of(job, snapshot), status);
   }
 
@@ -91,23 +88,31 @@ class TerminalView final : public JobView {
     draw();
   }
 
+  void compose(const job::JobState& job, const machine::Snapshot& snapshot) {
+    const int columns = terminal_columns();
+    rows_ = progress_bar(job, columns, utf8_) + "\x1b[K\n" + machine_line(snapshot, columns) + "\x1b[K\n";
+  }
+
+  /// Two rows; the cursor rests below them.
   void draw() {
-    if (bar_.empty()) return;
-    fmt::print("\r{}\x1b[K", bar_);
-    drawn_ = true;
+    if (rows_.empty()) return;
+    fmt::print("{}{}", is_drawn_ ? kTwoRowsUp : "", rows_);
+    is_drawn_ = true;
     std::fflush(stdout);
   }
 
   void erase() {
-    if (drawn_) fmt::print("\r\x1b[K");
-    drawn_ = false;
+    if (is_drawn_) fmt::print("{}\x1b[J", kTwoRowsUp);
+    is_drawn_ = false;
     std::fflush(stdout);
   }
 
+  static constexpr std::string_view kTwoRowsUp = "\x1b[2A\r";
+
   Pace pace_{100ms};
   const bool utf8_ = shows_utf8();
-  std::string bar_;
-  bool drawn_ = false;
+  std::string rows_;
+  bool is_drawn_ = false;
 };
 
 class LineView final : public JobView {

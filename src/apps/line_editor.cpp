@@ -33,8 +33,7 @@ class LineEditor final : public InputReader {
     el_set(editor_, EL_HIST, history, history_);
     el_set(editor_, EL_ADDFN, "kerf-realtime", "Acts at once at the start of a line", &LineEditor::take_realtime_key);
     for (const char* key : {"?", "!", "~", "^X"}) el_set(editor_, EL_BIND, key, "kerf-realtime", nullptr);
-    el_set(editor_, EL_UNBUFFERED, 1);  // this also switches the terminal to single keys
-    el_set(editor_, EL_REFRESH);
+    begin_line();
     watch_ = std::make_unique<io::ReadableWatch>(loop, STDIN_FILENO, [this] { read(); });
   }
 
@@ -42,16 +41,16 @@ class LineEditor final : public InputReader {
     watch_.reset();
     HistEvent event;
     if (!history_file_.empty()) history(history_, &event, H_SAVE, history_file_.c_str());
-    el_set(editor_, EL_UNBUFFERED, 0);
+    end_line();
     history_end(history_);
     el_end(editor_);
     fmt::print("\n");
   }
 
   void print(std::string_view line) override {
-    fmt::print("\r\x1b[K{}\n", line);
+    fmt::print("{}{}\n", is_editing_ ? "\r\x1b[K" : "", line);
     std::fflush(stdout);
-    el_set(editor_, EL_REFRESH);
+    if (is_editing_) el_set(editor_, EL_REFRESH);
   }
 
   bool clear_line() override {
@@ -90,19 +89,29 @@ class LineEditor final : public InputReader {
     int count = 0;
     const char* text = el_gets(editor_, &count);
     if (const char key = std::exchange(pressed_, '\0'); key != '\0') return callbacks_.realtime_key(key);
-    if (text == nullptr || count <= 0) {
-      if (text == nullptr || count < 0) callbacks_.ended();
-      return;
-    }
+    if (text == nullptr || count < 0) return callbacks_.ended();
     std::string line(text, static_cast<std::size_t>(count));
-    if (line.size() == 1 && line.front() == '\x04') return callbacks_.ended();
-    if (!line.ends_with('\n')) return;  // still being typed
+    if (line == "\x04") return callbacks_.ended();  // Ctrl-D
+    if (!line.ends_with('\n')) return;              // still being typed
     line.pop_back();
+    end_line();
     if (!line.empty()) {
       HistEvent event;
       history(history_, &event, H_ENTER, line.c_str());
     }
     callbacks_.line(line);
+    begin_line();
+  }
+
+  /// Switches the terminal to single keys, and shows the prompt.
+  void begin_line() {
+    el_set(editor_, EL_UNBUFFERED, 1);
+    is_editing_ = true;
+  }
+
+  void end_line() {
+    el_set(editor_, EL_UNBUFFERED, 0);
+    is_editing_ = false;
   }
 
   const std::string prompt_;
@@ -111,6 +120,7 @@ class LineEditor final : public InputReader {
   EditLine* editor_;
   History* history_;
   char pressed_ = '\0';
+  bool is_editing_ = false;
   std::unique_ptr<io::ReadableWatch> watch_;
 };
 

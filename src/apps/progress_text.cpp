@@ -13,9 +13,17 @@ namespace {
 
 using vocabulary::MachineState;
 
-std::string remaining_text(const job::Progress& progress) {
-  if (!progress.remaining_at_this_pace_s) return "-:--";
-  return clock_text(*progress.remaining_at_this_pace_s);
+std::string percent_text(const job::Progress& progress) {
+  return fmt::format("{:3.0f} %", std::floor(progress.percent));
+}
+
+std::string line_text(const job::Progress& progress) {
+  return fmt::format("line {}/{}", progress.file_line, progress.lines_total);
+}
+
+std::string times_text(const job::Progress& progress) {
+  const auto& left = progress.remaining_at_this_pace_s;
+  return fmt::format("{} gone, {} left", clock_text(progress.elapsed_s), left ? clock_text(*left) : "-:--");
 }
 
 std::string feed_text(const machine::Snapshot& snapshot) {
@@ -72,36 +80,32 @@ std::string state_text(const machine::Snapshot& snapshot) {
   return std::string(name_of(snapshot.state));
 }
 
-std::string progress_bar(const job::JobState& job, const machine::Snapshot& snapshot, int columns, bool with_utf8) {
-  const job::Progress& progress = job.progress;
-  const std::string percent = fmt::format("{:3.0f} %", std::floor(progress.percent));
-  const std::string line = fmt::format("line {}/{}", progress.file_line, progress.lines_total);
-  const std::string times = fmt::format("{} gone, {} left", clock_text(progress.elapsed_s), remaining_text(progress));
-  const std::string feed = feed_text(snapshot);
-  const std::string position = position_text(snapshot);
-  const std::string state = state_text(snapshot);
+std::string progress_bar(const job::JobState& job, int columns, bool with_utf8) {
+  const std::string percent = percent_text(job.progress);
+  const std::string times = times_text(job.progress);
+  // The last column stays free: some terminals wrap when it is written.
   const auto room = static_cast<std::size_t>(std::max(columns - 1, 1));
 
-  std::string text = joined({percent, line, times, feed, position, state});
+  std::string text = joined({percent, line_text(job.progress), times});
   constexpr std::size_t kLeastCells = 8;
   constexpr std::size_t kMostCells = 40;
   if (text.size() + 2 + kLeastCells <= room) {
     const std::size_t cells = std::min(kMostCells, room - text.size() - 2);
-    return bar(progress.percent, static_cast<int>(cells), with_utf8) + "  " + text;
+    return bar(job.progress.percent, static_cast<int>(cells), with_utf8) + "  " + text;
   }
-  if (text.size() > room) text = joined({percent, line, times, position, state});
-  if (text.size() > room) text = joined({percent, times, position, state});
-  if (text.size() > room) text = joined({percent, times, state});
-  if (text.size() > room) text = joined({percent, state});
+  if (text.size() > room) text = joined({percent, times});
+  if (text.size() > room) text = percent;
   return text.substr(0, room);
 }
 
+std::string machine_line(const machine::Snapshot& snapshot, int columns) {
+  const std::string text = joined({state_text(snapshot), feed_text(snapshot), position_text(snapshot)});
+  return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 1)));
+}
+
 std::string progress_line(const job::JobState& job, const machine::Snapshot& snapshot) {
-  const job::Progress& progress = job.progress;
-  return joined({fmt::format("{:3.0f} %", std::floor(progress.percent)),
-                 fmt::format("line {}/{}", progress.file_line, progress.lines_total),
-                 fmt::format("{} gone, {} left", clock_text(progress.elapsed_s), remaining_text(progress)),
-                 feed_text(snapshot), position_text(snapshot), state_text(snapshot)});
+  return joined({percent_text(job.progress), line_text(job.progress), times_text(job.progress), feed_text(snapshot),
+                 position_text(snapshot), state_text(snapshot)});
 }
 
 }  // namespace kerf::apps

@@ -18,12 +18,14 @@ namespace kerf::apps {
 /// "Run", "Hold (decelerating)"
 [[nodiscard]] std::string state_text(const machine::Snapshot& snapshot);
 
-/// One line that fits into `columns`: bar, percent, line, elapsed, remaining, feed, position, state. What does not fit
-/// is left out from the least important on: the bar first, then feed and line.
-[[nodiscard]] std::string progress_bar(const job::JobState& job, const machine::Snapshot& snapshot, int columns,
-                                       bool with_utf8);
+/// Bar, percent, line, elapsed and remaining time, in at most `columns`. What does not fit is left out: the bar first,
+/// then the line.
+[[nodiscard]] std::string progress_bar(const job::JobState& job, int columns, bool with_utf8);
 
-/// The same without a bar, for a log file.
+/// State, feed and position, in at most `columns`.
+[[nodiscard]] std::string machine_line(const machine::Snapshot& snapshot, int columns);
+
+/// Both in one line without a bar, for a log file.
 [[nodiscard]] std::string progress_line(const job::JobState& job, const machine::Snapshot& snapshot);
 
 }  // namespace kerf::apps

@@ -43,15 +43,15 @@ TEST(ProgressText, LineForALog) {
 }
 
 TEST(ProgressText, BarGivesUpTheLeastImportantFirst) {
-  EXPECT_EQ(progress_bar(half_done(), running(), 95, false),
-            "#####.......  42 %  line 812/1930  1:12 gone, 1:01:40 left  F1200  X12.345 Y0.000 Z0.500  Run");
-  EXPECT_EQ(progress_bar(half_done(), running(), 80, false),
-            " 42 %  line 812/1930  1:12 gone, 1:01:40 left  X12.345 Y0.000 Z0.500  Run");
-  EXPECT_EQ(progress_bar(half_done(), running(), 60, false),
-            " 42 %  1:12 gone, 1:01:40 left  X12.345 Y0.000 Z0.500  Run");
-  EXPECT_EQ(progress_bar(half_done(), running(), 12, false), " 42 %  Run");
-  for (int columns = 1; columns < 200; ++columns) {
-    EXPECT_LT(progress_bar(half_done(), running(), columns, false).size(), static_cast<std::size_t>(columns) + 1);
+  EXPECT_EQ(progress_bar(half_done(), 80, false),
+            "##############..................   42 %  line 812/1930  1:12 gone, 1:01:40 left");
+  EXPECT_EQ(progress_bar(half_done(), 50, true), " 42 %  line 812/1930  1:12 gone, 1:01:40 left");
+  EXPECT_EQ(progress_bar(half_done(), 40, false), " 42 %  1:12 gone, 1:01:40 left");
+  EXPECT_EQ(progress_bar(half_done(), 12, false), " 42 %");
+  EXPECT_EQ(machine_line(running(), 80), "Run  F1200  X12.345 Y0.000 Z0.500");
+  for (int columns = 2; columns < 200; ++columns) {
+    EXPECT_LT(progress_bar(half_done(), columns, false).size(), static_cast<std::size_t>(columns));
+    EXPECT_LT(machine_line(running(), columns).size(), static_cast<std::size_t>(columns));
   }
 }
 

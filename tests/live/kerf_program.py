@@ -126,11 +126,14 @@ class VirtualMachine(Running):
 class OnTerminal:
     """A `kerf` in front of a terminal of its own, on which the test presses keys."""
 
-    def __init__(self, *arguments, columns=120):
+    def __init__(self, *arguments):
         self.process_id, self.terminal = pty.fork()
         if self.process_id == 0:
-            os.environ.update(TERM="xterm", COLUMNS=str(columns), LC_ALL="C.UTF-8", XDG_STATE_HOME=tempfile.mkdtemp())
-            os.execv(KERF, [KERF, *arguments])
+            os.environ.update(TERM="xterm", LC_ALL="C.UTF-8", XDG_STATE_HOME=tempfile.gettempdir())
+            try:
+                os.execv(KERF, [KERF, *arguments])
+            finally:
+                os._exit(127)
         self.output = ""
         self.status = None
 

@@ -5,8 +5,7 @@ import pty
 import socket
 import unittest
 
-from kerf_program import (ALARM, DONE, INTERRUPTED, NO_CONNECTION, USAGE, LiveTest, Peer, VirtualMachine, example,
-                          free_port, kerf)
+from kerf_program import (ALARM, NO_CONNECTION, USAGE, LiveTest, Peer, Running, VirtualMachine, example, free_port, kerf)
 
 
 class Files(LiveTest):
@@ -80,7 +79,8 @@ class Options(LiveTest):
         self.assert_complains(kerf("virtual"), USAGE, "--listen")
         self.assert_complains(kerf("virtual", "--listen", "here"), USAGE, "here")
         self.assert_complains(kerf("virtual", "--listen", "127.0.0.1:0", "--speed", "-1"), USAGE, "-1")
-        self.assert_complains(kerf("virtual", "--listen", "127.0.0.1:0", "--settings", self.folder + "/no"), USAGE, "no")
+        missing = self.folder + "/no"
+        self.assert_complains(kerf("virtual", "--listen", "127.0.0.1:0", "--settings", missing), USAGE, missing)
         settings = self.file("settings", "$110=500\n$9999=1\n")
         self.assert_complains(kerf("virtual", "-p", "grbl", "--listen", "127.0.0.1:0", "--settings", settings), USAGE,
                               "$9999")
@@ -118,7 +118,6 @@ class Connections(LiveTest):
     def test_busy_port(self):
         path = os.path.join(self.folder, "machine")
         with VirtualMachine("grbl", tcp=False, pty_path=path):
-            from kerf_program import Running
             with Running("console", "--machine", path, stdin=-1) as first:
                 first.wait_for(r"Grbl")
                 self.check(path, NO_CONNECTION, path, "in use")

@@ -35,7 +35,7 @@ class Interrupt(LiveTest):
     def test_on_a_terminal_it_asks_and_goes_on(self):
         short_job = self.file("short.nc", "G21 G91\n" + "G1 X1 F300\nG1 X-1\n" * 10)
         with OnTerminal("run", short_job, "--machine", "virtual:grblhal") as terminal:
-            terminal.wait_for(r"  Run")
+            terminal.wait_for(r"Run  F")
             terminal.press("\x03")
             terminal.wait_for(r"\[c\]ontinue or \[s\]top\?")
             terminal.press("c")
@@ -45,7 +45,7 @@ class Interrupt(LiveTest):
     def test_on_a_terminal_it_asks_and_stops(self):
         for keys in (["\x03", "s"], [" ", "s"], ["\x03", "\x03"]):
             with self.subTest(keys), OnTerminal("run", self.long_job, "--machine", "virtual:grblhal") as terminal:
-                terminal.wait_for(r"  Run")
+                terminal.wait_for(r"Run  F")
                 terminal.press(keys[0])
                 terminal.wait_for(r"\[c\]ontinue or \[s\]top\?")
                 terminal.press(keys[1])

@@ -54,11 +54,11 @@ class Jobs(LiveTest):
             self.assertIn(key, last)
 
     def test_refused_line_is_named(self):
-        program = self.file("bad.nc", "G21\nG0 X1\nG99 X5\nG0 X2\n")
+        program = self.file("bad.nc", "G21\nG0 X1\nM77 X5\nG0 X2\n")
         for personality in PERSONALITIES:
             with self.subTest(personality):
                 result = kerf("run", program, "--machine", f"virtual:{personality}?speed=max")
-                self.assert_complains(result, REFUSED, "bad.nc", "line 3", "G99X5", "error 20")
+                self.assert_complains(result, REFUSED, "bad.nc", "line 3", "M77X5", "error 20")
                 events = kerf("run", program, "--machine", f"virtual:{personality}?speed=max", "--json").stdout
                 refusal = json.loads(events.splitlines()[-1])["refusal"]
                 self.assertEqual((refusal["file_line"], refusal["code"]), (3, 20))
