@@ -34,7 +34,8 @@ class Bench {
   /// Everything that was said since the last time, without empty lines.
   std::vector<std::string> hear() {
     std::vector<std::string> lines;
-    for (std::string_view line : base::split(controller.take_outbox(), '\n')) {
+    const std::string bytes = controller.take_outbox();
+    for (std::string_view line : base::split(bytes, '\n')) {
       if (line.ends_with('\r')) line.remove_suffix(1);
       if (!line.empty()) lines.emplace_back(line);
     }
