@@ -104,23 +104,23 @@ constexpr CommandRow kG19 = word(19, Group::G2, Meaning::Plane, code(Plane::YZ))
 constexpr CommandRow kG20 = word(20, Group::G6, Meaning::Units, 1);
 constexpr CommandRow kG21 = word(21, Group::G6, Meaning::Units, 0);
 constexpr CommandRow kG28 = stored(28, 0, NonModal::GoHome28);
-constexpr CommandRow kG28_1 = stored(28, 10, NonModal::SetHome28);
+constexpr CommandRow kG28Point1 = stored(28, 10, NonModal::SetHome28);
 constexpr CommandRow kG30 = stored(30, 0, NonModal::GoHome30);
-constexpr CommandRow kG30_1 = stored(30, 10, NonModal::SetHome30);
+constexpr CommandRow kG30Point1 = stored(30, 10, NonModal::SetHome30);
 constexpr CommandRow kG40 = word(40, Group::G7, Meaning::Nothing);
 constexpr CommandRow kG53 = non_modal(53, NonModal::AbsoluteOverride);
 constexpr CommandRow kG61 = else_unsupported(word(61, Group::G13, Meaning::Nothing));
 constexpr CommandRow kG80 = word(80, Group::G1, Meaning::Motion, code(MotionMode::None));
 constexpr CommandRow kG90 = else_unsupported(word(90, Group::G3, Meaning::Distance, 0));
 constexpr CommandRow kG91 = else_unsupported(word(91, Group::G3, Meaning::Distance, 1));
-constexpr CommandRow kG91_1 = with_fraction(word(91, Group::G4, Meaning::Nothing), 10);
+constexpr CommandRow kG91Point1 = with_fraction(word(91, Group::G4, Meaning::Nothing), 10);
 constexpr CommandRow kG92 = stored(92, 0, NonModal::SetCoordinateOffset);
-constexpr CommandRow kG92_1 = stored(92, 10, NonModal::ResetCoordinateOffset);
+constexpr CommandRow kG92Point1 = stored(92, 10, NonModal::ResetCoordinateOffset);
 constexpr CommandRow kG93 = word(93, Group::G5, Meaning::FeedMode, code(FeedMode::InverseTime));
 constexpr CommandRow kG94 = word(94, Group::G5, Meaning::FeedMode, code(FeedMode::UnitsPerMinute));
 
 /// G43.1 and G49 of Grbl and Rabbit: both use the axis words, G49 with any fraction.
-constexpr CommandRow kG43_1 =
+constexpr CommandRow kG43Point1 =
     claims_first(else_unsupported(claiming(tool_length(43, 10, ToolLengthMode::Dynamic), AxisCommand::ToolLength)));
 constexpr CommandRow kG49 = any_fraction(claiming(tool_length(49, 0, ToolLengthMode::None), AxisCommand::ToolLength));
 
@@ -146,15 +146,15 @@ constexpr CommandRow kGrblG[] = {
     kG20,
     kG21,
     kG28,
-    kG28_1,
+    kG28Point1,
     kG30,
-    kG30_1,
+    kG30Point1,
     probe(20, MotionMode::ProbeToward, true),
     probe(30, MotionMode::ProbeTowardNoError, true),
     probe(40, MotionMode::ProbeAway, true),
     probe(50, MotionMode::ProbeAwayNoError, true),
     kG40,
-    kG43_1,
+    kG43Point1,
     kG49,
     kG53,
     offset(54, 0),
@@ -167,9 +167,9 @@ constexpr CommandRow kGrblG[] = {
     kG80,
     kG90,
     kG91,
-    kG91_1,
+    kG91Point1,
     kG92,
-    kG92_1,
+    kG92Point1,
     kG93,
     kG94,
 };
@@ -191,15 +191,15 @@ constexpr CommandRow kRabbitG[] = {
     kG20,
     kG21,
     kG28,
-    kG28_1,
+    kG28Point1,
     kG30,
-    kG30_1,
+    kG30Point1,
     probe(20, MotionMode::ProbeToward, true),
     probe(30, MotionMode::ProbeTowardNoError, true),
     probe(40, MotionMode::ProbeAway, true),
     probe(50, MotionMode::ProbeAway, true),
     kG40,
-    kG43_1,
+    kG43Point1,
     kG49,
     kG53,
     offset(54, 0),
@@ -212,9 +212,9 @@ constexpr CommandRow kRabbitG[] = {
     kG80,
     kG90,
     kG91,
-    kG91_1,
+    kG91Point1,
     kG92,
-    kG92_1,
+    kG92Point1,
     kG93,
     kG94,
 };
@@ -254,9 +254,9 @@ constexpr CommandRow kGrblHalG[] = {
     kG20,
     kG21,
     kG28,
-    kG28_1,
+    kG28Point1,
     kG30,
-    kG30_1,
+    kG30Point1,
     motion(33, MotionMode::SpindleSynchronized),
     with_fraction(motion(33, MotionMode::RigidTap), 10),
     probe(20, MotionMode::ProbeToward, false),
@@ -296,9 +296,9 @@ constexpr CommandRow kGrblHalG[] = {
     motion(89, MotionMode::BoreDwell),
     kG90,
     kG91,
-    kG91_1,
+    kG91Point1,
     kG92,
-    kG92_1,
+    kG92Point1,
     stored(92, 20, NonModal::ClearCoordinateOffset),
     stored(92, 30, NonModal::RestoreCoordinateOffset),
     kG93,

@@ -54,13 +54,13 @@ std::expected<void, ErrorCode> Interpreter::interpret(std::string_view line, std
   return std::unexpected(error);
 }
 
-std::expected<JogMove, ErrorCode> Interpreter::interpret_jog(std::string_view after_dollar_J) {
+std::expected<JogMove, ErrorCode> Interpreter::interpret_jog(std::string_view after_dollar_j) {
   std::vector<Action> said;
   BlockContext context{.rules = *rules_, .settings = settings_, .state = state_, .offsets = offsets_, .out = said};
   Block block;
   start_block(block, state_, true);
   BlockBuffer buffer;
-  prepare_text(after_dollar_J, true, *rules_, settings_, buffer);
+  prepare_text(after_dollar_j, true, *rules_, settings_, buffer);
   ErrorCode error = collect_words(buffer.text.data(), block, context);
   if (error == ErrorCode::Ok) error = run(rules_->checks, block, context);
   if (error != ErrorCode::Ok) {
@@ -77,7 +77,7 @@ std::expected<JogMove, ErrorCode> Interpreter::interpret_jog(std::string_view af
 }
 
 void Interpreter::reset() {
-  const ParserState old = std::move(state_);
+  const ParserState old = state_;
   state_ = {};
   state_.position_mm = old.position_mm;
   if (!rules_->reset_clears_tool) state_.tool = state_.tool_pending = old.tool;

@@ -56,7 +56,7 @@ class Interpreter {
   std::expected<void, ErrorCode> interpret(std::string_view line, std::vector<Action>& out);
 
   /// The text after `$J=`. Changes no state: the owner checks the travel, then calls sync_position with the target.
-  std::expected<JogMove, ErrorCode> interpret_jog(std::string_view after_dollar_J);
+  std::expected<JogMove, ErrorCode> interpret_jog(std::string_view after_dollar_j);
 
   /// Soft reset: modal state, tool and offsets as this firmware clears them (protocol.md 1.2); the position stays.
   void reset();

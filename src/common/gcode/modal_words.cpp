@@ -1,9 +1,9 @@
 #include "common/gcode/modal_words.hpp"
 
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
+
+#include "common/gcode/numbers.hpp"
+#include "common/gcode/print_number.hpp"
 
 namespace kerf::gcode {
 
@@ -15,7 +15,7 @@ constexpr std::string_view kMotionWords[] = {"G0",  "G1",   "G2",  "G3",    "G38
 /// Rabbit counts the probe modes from one less.
 constexpr std::string_view kRabbitProbeWords[] = {"G38.1", "G38.2", "G38.3", "G38.4"};
 constexpr std::string_view kWorkOffsetWords[] = {"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"};
-constexpr float kMmPerInch = 25.4F;
+constexpr float kInchPerMm = 0.0393701F;
 
 class Words {
  public:
@@ -107,31 +107,24 @@ void add_overrides(const OverridePermissions& permissions, bool shows_parking, W
   if (shows_parking && !permissions.parking) words.add("M56");
 }
 
-/// Grbl's and grblHAL's printer: adds half of the last place and cuts, in float.
-void append_rounded(float value, int decimals, std::string& out) {
-  if (value < 0.0F) {
-    out += '-';
-    value = -value;
-  }
-  if (decimals > 0) value *= 10.0F;
-  const auto scaled = static_cast<std::uint64_t>(std::fmin(value + 0.5F, 4294967040.0F));
-  out += std::to_string(decimals > 0 ? scaled / 10 : scaled);
-  if (decimals > 0) (out += '.') += std::to_string(scaled % 10);
-}
-
-/// C's printf: half goes to the even neighbour.
-void append_printed(float value, int decimals, std::string& out) {
-  std::array<char, 64> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals);
-  out.append(text.data(), end.ptr);
-}
-
-void add_number(char letter, float value, int decimals, bool printf_like, Words& words) {
-  words.add({&letter, 1});
-  if (printf_like) {
-    append_printed(value, decimals, words.text());
+/// grblHAL cuts F to a whole number, in inches too; Rabbit forgets to convert it; Grbl rounds it.
+void add_feed(const ParserState& state, const GcodeRules& rules, bool inches, Words& words) {
+  words.add("F");
+  const bool converts = inches && rules.report != ReportedGroups::Rabbit;
+  const float rate = converts ? state.feed_rate * kInchPerMm : state.feed_rate;
+  if (rules.report == ReportedGroups::All) {
+    words.text() += std::to_string(to_uint32(static_cast<double>(rate)));
   } else {
-    append_rounded(value, decimals, words.text());
+    append_number(rules.printer, rate, inches ? 1 : 0, words.text());
+  }
+}
+
+void add_speed(const ParserState& state, const GcodeRules& rules, Words& words) {
+  words.add("S");
+  if (rules.report == ReportedGroups::Rabbit) {
+    words.text() += std::to_string(to_uint32(static_cast<double>(state.spindle_rpm)));
+  } else {
+    append_number(rules.printer, state.spindle_rpm, 0, words.text());
   }
 }
 
@@ -165,11 +158,8 @@ void append_modal_words(const ParserState& state, const Offsets& offsets, const 
 
   words.add("T");
   out += std::to_string(state.tool);
-  // Rabbit prints with printf and forgets to convert F to inches.
-  const bool converts = style.inches && !rabbit;
-  add_number('F', converts ? state.feed_rate / kMmPerInch : state.feed_rate, style.inches && !all_groups ? 1 : 0, rabbit, words);
-  add_number('S', rabbit ? std::trunc(state.spindle_rpm) : state.spindle_rpm, 0, false, words);
-  if (all_groups) out += '.';
+  add_feed(state, rules, style.inches, words);
+  add_speed(state, rules, words);
 }
 
 }  // namespace kerf::gcode

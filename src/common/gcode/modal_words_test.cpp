@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/gcode/interpreter.hpp"
+#include "common/gcode/print_number.hpp"
 
 namespace kerf::gcode {
 namespace {
@@ -40,7 +41,32 @@ TEST(ModalWords, RabbitNamesProbesOneLessAndCutsSpeeds) {
 TEST(ModalWords, FeedRoundsAsTheFirmwarePrints) {
   EXPECT_EQ(words_after(Firmware::Grbl, {"F12.5"}), "G0 G54 G17 G21 G90 G94 M5 M9 T0 F13 S0");
   EXPECT_EQ(words_after(Firmware::Rabbit, {"F12.5"}), "G0 G54 G17 G21 G90 G94 M5 M9 T0 F12 S0");
+  EXPECT_EQ(words_after(Firmware::GrblHal, {"F12.9"}), "G0 G54 G17 G21 G90 G94 G40 G49 G98 G50 M5 M9 T0 F12 S0.");
   EXPECT_EQ(words_after(Firmware::Grbl, {"F254"}, {.inches = true}), "G0 G54 G17 G21 G90 G94 M5 M9 T0 F10.0 S0");
+}
+
+}  // namespace
+}  // namespace kerf::gcode
+
+namespace kerf::gcode {
+namespace {
+
+std::string printed(NumberPrinter printer, float value, int decimals) {
+  std::string out;
+  append_number(printer, value, decimals, out);
+  return out;
+}
+
+TEST(PrintNumber, EachFirmwareInItsWay) {
+  EXPECT_EQ(printed(NumberPrinter::ScaleThenCut, 12.5F, 0), "13");
+  EXPECT_EQ(printed(NumberPrinter::ScaleThenCut, -0.0125F, 3), "-0.013");
+  EXPECT_EQ(printed(NumberPrinter::ScaleThenCut, 0.0F, 3), "0.000");
+  EXPECT_EQ(printed(NumberPrinter::ScaleThenCut, 1.0005F, 3), "1.000");
+  EXPECT_EQ(printed(NumberPrinter::Printf, 12.5F, 0), "12");
+  EXPECT_EQ(printed(NumberPrinter::Printf, -1.5F, 3), "-1.500");
+  EXPECT_EQ(printed(NumberPrinter::RoundThenSplit, 12.5F, 0), "13.");
+  EXPECT_EQ(printed(NumberPrinter::RoundThenSplit, -3.05F, 3), "-3.050");
+  EXPECT_EQ(printed(NumberPrinter::RoundThenSplit, 0.9999F, 3), "1.000");
 }
 
 }  // namespace

@@ -11,14 +11,14 @@ namespace {
 
 constexpr double kTwoTo63 = 9223372036854775808.0;
 
-/// Digits read so far. `exponent` is eight bits wide as in the firmwares, so that absurd lengths wrap as they do there.
+/// Digits read so far. The exponent wraps at eight bits as in the firmwares, for absurd lengths.
 struct Digits {
   std::uint32_t whole = 0;
-  std::int8_t exponent = 0;
+  int exponent = 0;
   std::uint8_t count = 0;
   bool seen = false;
 
-  void step_exponent(int by) { exponent = static_cast<std::int8_t>(exponent + by); }
+  void step_exponent(int by) { exponent = ((exponent + by + 128) & 0xFF) - 128; }
 };
 
 /// Scales by powers of ten in the firmwares' order: hundredths, a last tenth, or tens.

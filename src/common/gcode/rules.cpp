@@ -107,7 +107,8 @@ GcodeRules make_rabbit() {
           .rapid_wants_inverse_feed = true,
           .g10_checks_l_first = true,
           .coolant_word_always_acts = true,
-          .report = ReportedGroups::Rabbit};
+          .report = ReportedGroups::Rabbit,
+          .printer = NumberPrinter::Printf};
 }
 
 GcodeRules make_grblhal() {
@@ -132,6 +133,7 @@ GcodeRules make_grblhal() {
           .program_end_restores_overrides = false,
           .stores_g92 = true,
           .report = ReportedGroups::All,
+          .printer = NumberPrinter::RoundThenSplit,
           .reset_clears_tool = false,
           .reset_clears_g92 = false,
           .reset_clears_tool_length = false};

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "common/gcode/print_number.hpp"
 #include "common/vocabulary/errors.hpp"
 #include "common/vocabulary/firmware.hpp"
 
@@ -110,6 +111,7 @@ struct GcodeRules {
   bool stores_g92 = false;
 
   ReportedGroups report = ReportedGroups::Grbl;
+  NumberPrinter printer = NumberPrinter::ScaleThenCut;
 
   /// What a reset wipes (protocol.md 1.2).
   bool reset_clears_tool = true;
