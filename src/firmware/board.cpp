@@ -41,10 +41,10 @@ struct Travel {
 Travel travel_of(const Board& board, int axis) {
   const auto length = static_cast<float>(board.settings.number(setting::kMaxTravel, axis));
   const bool homes_to_minus = board.settings.flag(setting::kHomingDirection, static_cast<unsigned>(axis));
-  switch (board.personality.firmware) {
-    case vocabulary::Firmware::Rabbit:
+  switch (board.personality.homing.travel) {
+    case TravelRule::MirroredByDirection:
       return homes_to_minus ? Travel{.min = 0, .max = length} : Travel{.min = -length, .max = 0};
-    case vocabulary::Firmware::GrblHal: {
+    case TravelRule::HomedEnvelope: {
       const float pull_off = board.settings.flag(setting::kHardLimits)
                                  ? static_cast<float>(board.settings.number(setting::kHomingPullOff))
                                  : 0.0F;
@@ -53,8 +53,9 @@ Travel travel_of(const Board& board, int axis) {
       }
       return homes_to_minus ? Travel{.min = 0, .max = length - pull_off} : Travel{.min = -length + pull_off, .max = 0};
     }
-    default: return {.min = -length, .max = 0};
+    case TravelRule::NegativeSpace: break;
   }
+  return {.min = -length, .max = 0};
 }
 
 bool is_guarded(const Board& board, int axis) {

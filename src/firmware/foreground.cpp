@@ -259,7 +259,7 @@ void Foreground::look_at_switches() {
 }
 
 Receiver::LineContext Foreground::line_context() const {
-  if (board_.personality.firmware != vocabulary::Firmware::GrblHal || !reader_.keeps_realtime_characters()) return {};
+  if (!board_.personality.keeps_special_bytes || !reader_.keeps_realtime_characters()) return {};
   return {.keeps_high_bytes = true, .keeps_printable_commands = !board_.settings.flag(setting::kLegacyRealtime)};
 }
 

@@ -128,7 +128,7 @@ void Homing::set_position() {
     const bool to_minus = board_.settings.flag(setting::kHomingDirection, static_cast<unsigned>(axis));
     float mm = to_minus ? -travel + pull_off : -pull_off;
     // Rabbit's space is mirrored on axes that home towards minus (motion.md 1.6).
-    if (to_minus && board_.personality.firmware == vocabulary::Firmware::Rabbit) mm = pull_off;
+    if (to_minus && board_.personality.homing.travel == TravelRule::MirroredByDirection) mm = pull_off;
     if (board_.personality.homing.tracks_axes && board_.settings.flag(setting::kHoming, homing_bit::kOriginZero)) {
       mm = 0;
     }

@@ -170,7 +170,7 @@ void Listing::startup_lines() {
 
 std::string Listing::option_letters() const {
   const auto& settings = board_.settings;
-  if (board_.personality.firmware != vocabulary::Firmware::GrblHal) {
+  if (!board_.personality.options_follow_settings) {
     return std::string{board_.personality.dialect().options};
   }
   // grblHAL report.c report_build_info: most letters follow settings.
@@ -202,7 +202,7 @@ std::vector<std::string> Listing::new_options() const {
 
 void Listing::build_information(bool extended) {
   const vocabulary::Dialect& dialect = board_.personality.dialect();
-  const bool has_text = board_.personality.firmware != vocabulary::Firmware::Rabbit;
+  const bool has_text = board_.personality.version_has_user_text;
   board_.say(protocol::Version{.version = std::string{dialect.version},
                                .build = std::string{dialect.build},
                                .user_text = board_.stored.user_text,

@@ -46,7 +46,7 @@ class Listing {
   [[nodiscard]] std::set<int> groups_in_use() const;
   [[nodiscard]] std::string option_letters() const;
   [[nodiscard]] std::vector<std::string> new_options() const;
-  [[nodiscard]] bool titles() const { return board_.personality.firmware != vocabulary::Firmware::GrblHal; }
+  [[nodiscard]] bool titles() const { return board_.personality.codes_have_titles; }
 
   Board& board_;
 };

@@ -124,7 +124,14 @@ using CommandParser = std::expected<ParsedCommand, ErrorCode> (*)(const Personal
 using SettingCheck = std::expected<std::string, ErrorCode> (*)(const SettingsStore&, const vocabulary::SettingMatch&,
                                                                std::string_view text);
 
-/// What the machine remembers of a homing cycle.
+/// Where the machine's travel lies, in machine coordinates (motion.md 1.6).
+enum class TravelRule : std::uint8_t {
+  NegativeSpace,        ///< Grbl: always below zero
+  MirroredByDirection,  ///< Rabbit: above zero on axes that home towards minus
+  HomedEnvelope,        ///< grblHAL: less the pull-off with hard limits on; zero at the switch with `$22` bit 3
+};
+
+/// How homing goes, and what the machine remembers of it.
 struct HomingRules {
   /// Axis masks of the cycles in order, where they are compiled in; zeros are skipped.
   std::array<std::uint8_t, 6> fixed_cycles{};
@@ -139,6 +146,11 @@ struct HomingRules {
   bool announces = false;
   /// Counts which axes are homed; soft limits then only hold for those.
   bool tracks_axes = false;
+  TravelRule travel = TravelRule::NegativeSpace;
+  /// `$HX` exists.
+  bool homes_single_axes = true;
+  /// Answer to `$H` when no cycle has an axis.
+  ErrorCode no_cycle_error = ErrorCode::HomingDisabled;
 };
 
 /// What happens when power comes or a reset has cleared everything.
@@ -183,6 +195,15 @@ struct Personality {
 
   bool full_buffer_drops_realtime = false;  ///< Rabbit
   bool drops_delete = false;                ///< grblHAL: DEL outside `$` lines never reaches the line
+  bool keeps_special_bytes = false;         ///< grblHAL: `$` lines and comments may keep DEL, top-bit bytes and `?!~`
+  /// grblHAL's settings beyond Grbl's, and what hangs on them: jog clipping, door and tool change options, reset
+  /// actions.
+  bool has_extended_settings = false;
+  bool tells_build_at_length = false;    ///< `$I` says as much as `$I+`
+  bool options_follow_settings = false;  ///< the letters of `[OPT:]`
+  bool version_has_user_text = true;
+  bool codes_have_titles = true;  ///< `$EA`, `$EE`: else the title stays empty
+  ErrorCode unknown_setting_error = ErrorCode::InvalidStatement;
   bool reads_lines_in_sleep = false;
   bool sleep_needs_setting = false;  ///< grblHAL `$62`
   bool check_mode_is_silent = false;

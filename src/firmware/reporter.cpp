@@ -42,11 +42,10 @@ std::optional<int> substate_of(const Board& board) {
 std::vector<std::string> parser_state_words(const Board& board) {
   constexpr int kParking = 41;
   constexpr unsigned kParkingOverride = 2;
-  const bool grblhal = board.personality.firmware == vocabulary::Firmware::GrblHal;
-  const gcode::ModalWordsStyle style = {
-      .inches = board.settings.flag(setting::kReportInches),
-      .axes = board.settings.axes(),
-      .parking_override_control = grblhal && board.settings.flag(kParking, kParkingOverride)};
+  const gcode::ModalWordsStyle style = {.inches = board.settings.flag(setting::kReportInches),
+                                        .axes = board.settings.axes(),
+                                        .parking_override_control = board.personality.has_extended_settings &&
+                                                                    board.settings.flag(kParking, kParkingOverride)};
   std::string text;
   gcode::append_modal_words(board.interpreter.state(), board.interpreter.offsets(), board.interpreter.rules(), style,
                             text);

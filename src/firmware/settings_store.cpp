@@ -61,8 +61,7 @@ void SettingsStore::save(StoredState& stored) const {
 std::expected<void, ErrorCode> SettingsStore::write(std::string_view key, std::string_view text) {
   const Slot* slot = find(key);
   if (slot == nullptr) {
-    const bool says_disabled = personality_.firmware == vocabulary::Firmware::GrblHal;
-    return std::unexpected(says_disabled ? ErrorCode::SettingDisabled : ErrorCode::InvalidStatement);
+    return std::unexpected(personality_.unknown_setting_error);
   }
   auto checked = personality_.check_setting(*this, slot->match, text);
   if (!checked) return std::unexpected(checked.error());
@@ -133,7 +132,7 @@ motion::MotionSettings SettingsStore::motion() const {
 void SettingsStore::configure(gcode::InterpreterSettings& settings) const {
   settings.axes = axes_;
   settings.laser_mode = number(setting::kMode) == 1.0;
-  if (personality_.firmware != vocabulary::Firmware::GrblHal) return;
+  if (!personality_.has_extended_settings) return;
   settings.ignore_tool_change = number(setting::kToolChangeMode) == 4.0;
   settings.g92_volatile = flag(setting::kG92Volatile);
   settings.restore_overrides_at_end = flag(setting::kRestoreOverrides);

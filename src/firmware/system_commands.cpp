@@ -17,10 +17,6 @@ constexpr std::chrono::milliseconds kRabbitListPause{100};
 constexpr std::chrono::milliseconds kHomingAnnouncement{100};
 constexpr unsigned kLimitsStrictBit = 1;
 
-bool is_grblhal(const Board& board) {
-  return board.personality.firmware == vocabulary::Firmware::GrblHal;
-}
-
 }  // namespace
 
 bool homing_is_required(const Board& board) {
@@ -57,7 +53,7 @@ SystemCommands::Result SystemCommands::dispatch(const ParsedCommand& command, St
     case Command::StoreUserText: return store_user_text(command);
     case Command::BuildInformation:
       if (command.has_value) return store_user_text(command);
-      listing_.build_information(is_grblhal(board_));
+      listing_.build_information(board_.personality.tells_build_at_length);
       return {};
     case Command::StoreStartupLine: return store_startup_line(command, steps);
     case Command::Restore: return restore(command, steps);
@@ -135,7 +131,7 @@ SystemCommands::Result SystemCommands::describe_setting(const ParsedCommand& com
 SystemCommands::Result SystemCommands::read_setting(const ParsedCommand& command) {
   const auto* slot = board_.settings.find(command.key);
   if (slot == nullptr) {
-    return std::unexpected(is_grblhal(board_) ? ErrorCode::SettingDisabled : ErrorCode::InvalidStatement);
+    return std::unexpected(board_.personality.unknown_setting_error);
   }
   board_.say(protocol::SettingValue{.id = command.key, .value = slot->text});
   return {};
@@ -149,7 +145,7 @@ SystemCommands::Result SystemCommands::write_setting(const ParsedCommand& comman
   board_.apply_settings();
   board_.store_settings();
   if (command.key == std::to_string(setting::kReportInches)) board_.owe_work_offset();
-  if (!is_grblhal(board_)) return {};
+  if (!board_.personality.has_extended_settings) return {};
 
   // grblHAL settings.c: a position keeps its millimetres, a new travel makes its axis unhomed, and a new tool change
   // mode starts tool changes anew.
@@ -188,7 +184,7 @@ SystemCommands::Result SystemCommands::check_mode(Steps& steps) {
 }
 
 std::optional<ErrorCode> SystemCommands::lock_reason(bool homing) const {
-  if (!is_grblhal(board_)) return std::nullopt;
+  if (!board_.personality.has_extended_settings) return std::nullopt;
   const Workcell& cell = board_.workcell;
   if (cell.is_active(Input::EmergencyStop)) return ErrorCode::EmergencyStop;
   if (cell.is_active(Input::Door) && !board_.settings.flag(setting::kDoorOptions)) return ErrorCode::CheckDoor;
@@ -214,7 +210,7 @@ SystemCommands::Result SystemCommands::home(const ParsedCommand& command, Steps&
   const auto& settings = board_.settings;
   AxisMask asked = 0;
   if (!command.key.empty()) {
-    if (is_grblhal(board_) && !settings.flag(setting::kHoming, homing_bit::kSingleAxis)) {
+    if (board_.personality.has_extended_settings && !settings.flag(setting::kHoming, homing_bit::kSingleAxis)) {
       return std::unexpected(ErrorCode::HomingDisabled);
     }
     const auto axis = vocabulary::axis_of(command.key.front());
@@ -225,12 +221,12 @@ SystemCommands::Result SystemCommands::home(const ParsedCommand& command, Steps&
   }
   if (const auto reason = lock_reason(true)) return std::unexpected(*reason);
   if (!settings.flag(setting::kHoming)) return std::unexpected(ErrorCode::HomingDisabled);
-  const bool single_axis_unknown = board_.personality.firmware == vocabulary::Firmware::Grbl;
+  const bool single_axis_unknown = !board_.personality.homing.homes_single_axes;
   if (!command.key.empty() && (asked == 0 || single_axis_unknown)) return std::unexpected(ErrorCode::InvalidStatement);
   std::vector<AxisMask> cycles = board_.homing_cycles();
   if (asked != 0) cycles = {asked};
   if (cycles.empty()) {
-    return std::unexpected(is_grblhal(board_) ? ErrorCode::HomingDisabled : ErrorCode::HomingNotDefined);
+    return std::unexpected(board_.personality.homing.no_cycle_error);
   }
 
   board_.state = MachineState::Home;
@@ -250,7 +246,7 @@ SystemCommands::Result SystemCommands::home(const ParsedCommand& command, Steps&
 SystemCommands::Result SystemCommands::jog(const ParsedCommand& command, Steps& steps) {
   auto move = board_.interpreter.interpret_jog(command.value);
   if (!move) return std::unexpected(move.error());
-  if (is_grblhal(board_) && board_.settings.flag(setting::kLimitJogs)) {
+  if (board_.personality.has_extended_settings && board_.settings.flag(setting::kLimitJogs)) {
     move->target_mm = board_.clipped_to_travel(move->target_mm);
   } else if (board_.settings.flag(setting::kSoftLimits) && !board_.is_within_travel(move->target_mm)) {
     return std::unexpected(ErrorCode::TravelExceeded);
@@ -296,7 +292,8 @@ SystemCommands::Result SystemCommands::restore(const ParsedCommand& command, Ste
   const bool everything = what == "*" || (names && base::iequals(what, "all"));
   const bool settings = everything || what == "$" || (names && base::iequals(what, "settings"));
   const bool offsets = everything || what == "#" || (names && base::iequals(what, "gcode"));
-  const bool driver = (is_grblhal(board_) && what == "&") || (names && (what == "@" || base::iequals(what, "wifi")));
+  const bool driver = (board_.personality.has_extended_settings && what == "&") ||
+                      (names && (what == "@" || base::iequals(what, "wifi")));
   if (!settings && !offsets && !driver) return std::unexpected(ErrorCode::InvalidStatement);
 
   if (settings) board_.settings.restore_defaults();

@@ -32,7 +32,7 @@ const Personality kGrbl = {
               .blank_memory_lists_settings = true,
               .homing_locks = true,
               .limits_lock = true},
-    .homing = {.fixed_cycles = {0b100, 0b011}},
+    .homing = {.fixed_cycles = {0b100, 0b011}, .homes_single_axes = false},
     .realtime = {.same_instant_collapses = true, .toggles_coolant_in_jog = true},
     .stored_writes_synchronise = true,
     .soft_limits_in_check = true,
