@@ -134,6 +134,18 @@ TEST_P(RefusalsAndAlarms, ABrownOutInterrupts) {
   EXPECT_EQ(world.session().job()->phase, JobPhase::Interrupted);
 }
 
+TEST(ToolChange, OnGrblHalIsWaitedForAndResumed) {
+  World world{quick_serial(Firmware::GrblHal)};
+  ASSERT_TRUE(start(world, "G21G90\nG1X10F3000\nT2M6\nG1X20\nM30\n", 10s));
+  ASSERT_EQ(world.session().job()->phase, JobPhase::Held);
+  EXPECT_EQ(world.session().job()->hold_cause, job::HoldCause::ToolChange);
+  EXPECT_NEAR(position_mm(world, 0), 10, 0.01);
+  world.submit(session::ResumeJob{});
+  ASSERT_TRUE(world.run_until(is_over, 1min));
+  EXPECT_EQ(world.session().job()->phase, JobPhase::Finished) << world.session().job()->reason;
+  EXPECT_NEAR(position_mm(world, 0), 20, 0.01);
+}
+
 TEST_P(RefusalsAndAlarms, APendantInTheMiddleInterruptsAndKerfKeepsQuiet) {
   World world{quick_serial(GetParam())};
   ASSERT_TRUE(start(world, zigzag(20), 3s));

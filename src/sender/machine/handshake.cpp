@@ -15,8 +15,9 @@ using vocabulary::MachineState;
 using vocabulary::Realtime;
 
 constexpr Duration kListen = 500ms;
-/// A welcome is followed at once by unlock messages and startup results.
-constexpr Duration kListenAfterWelcome = 100ms;
+/// A welcome is followed at once by unlock messages and startup results; grblHAL's simulator loses what comes in
+/// meanwhile.
+constexpr Duration kListenAfterWelcome = 300ms;
 constexpr Duration kFullReportPatience = 250ms;
 constexpr Duration kAskEvery = 500ms;
 constexpr Duration kSilentAfter = 2s;
@@ -64,7 +65,7 @@ void Handshake::enter(HandshakeStage stage, Instant deadline) {
 void Handshake::on_open(Instant now) {
   collector_.forget();
   capabilities_ = {};
-  fresh_ = reset_done_ = reported_ = quick_ = latch_clearing_ = false;
+  fresh_ = reset_done_ = reported_ = quick_ = latch_clearing_ = cleared_twice_ = false;
   restarts_ = 0;
   strange_line_.clear();
   state_ = busy_told_ = MachineState::Unknown;
@@ -290,6 +291,12 @@ void Handshake::fail(HandshakeFailure failure, std::string sentence) {
 void Handshake::time_out_clearing(Instant now, const Snapshot& snapshot) {
   if (snapshot.state == MachineState::Alarm && !reset_done_) {
     reset(now, "The machine is in alarm and answers no line: only a reset helps, and nothing moves.");
+    return;
+  }
+  if (!cleared_twice_) {
+    cleared_twice_ = true;
+    orders_.emplace_back(ForgetQuestions{});
+    clear(now);
     return;
   }
   fail(HandshakeFailure::LinesUnanswered,

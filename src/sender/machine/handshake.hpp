@@ -140,6 +140,8 @@ class Handshake {
   bool reported_ = false;
   bool quick_ = false;
   bool latch_clearing_ = false;
+  /// The empty line was sent again: it can get lost.
+  bool cleared_twice_ = false;
   int restarts_ = 0;
   std::vector<std::string> asked_;
   std::string strange_line_;

@@ -150,7 +150,7 @@ TEST(HandshakeSession, NoiseBeforeTheWelcomeDoesNoHarm) {
 TEST(HandshakeSession, TwoBannersAndALateOneStartOver) {
   Conversation talk{grbl_replies()};
   talk.open("Grbl 1.1h ['$' for help]\r\nGrbl 1.1h ['$' for help]\r\n");
-  talk.pass(150ms);
+  talk.pass(350ms);
   talk.hear("\r\nGrbl 1.1h ['$' for help]\r\n");
   talk.pass(5s);
   EXPECT_EQ(talk.session.phase(), SessionPhase::Ready);
