@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include "apps/commands.hpp"
+#include "apps/output.hpp"
 
 namespace kerf::apps {
 
 void complain(const std::string& sentence) {
   std::fflush(stdout);
-  fmt::print(stderr, "kerf: {}\n", sentence);
+  put_to(stderr, "kerf: {}\n", sentence);
 }
 
 }  // namespace kerf::apps

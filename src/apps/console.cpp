@@ -15,6 +15,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/line_editor.hpp"
+#include "apps/output.hpp"
 #include "apps/progress_text.hpp"
 #include "apps/terminal.hpp"
 #include "common/base/text.hpp"
@@ -120,7 +121,7 @@ class Console {
                                    .realtime_key = [this](char key) { press(key); },
                                    .ended = [this] { end(); }};
     if (is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO)) {
-      fmt::print("At the start of a line ? ! ~ and Ctrl-X act at once. Ctrl-D leaves.\n");
+      put("At the start of a line ? ! ~ and Ctrl-X act at once. Ctrl-D leaves.\n");
       input_ = make_line_editor(loop_, "> ", history_file(), callbacks);
     } else {
       input_ = make_plain_reader(loop_, callbacks);
@@ -171,7 +172,7 @@ class Console {
     if (input_) {
       input_->print(line);
     } else {
-      fmt::print("{}\n", line);
+      put("{}\n", line);
       std::fflush(stdout);
     }
   }

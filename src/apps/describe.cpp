@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "apps/commands.hpp"
+#include "apps/output.hpp"
 #include "io/json.hpp"
 #include "io/session_host.hpp"
 
@@ -34,26 +35,26 @@ std::string_view source_text(FactSource source) {
 }
 
 void print_row(std::string_view name, std::string_view value) {
-  if (!value.empty()) fmt::print("  {:<14} {}\n", name, value);
+  if (!value.empty()) put("  {:<14} {}\n", name, value);
 }
 
 void print_codes(std::string_view title, const std::vector<machine::CodeFact>& codes) {
   if (codes.empty()) return;
-  fmt::print("\n{} ({})\n", title, codes.size());
+  put("\n{} ({})\n", title, codes.size());
   for (const machine::CodeFact& code : codes) {
     // grblHAL has texts whose beginning serves as the title.
     const bool is_repeated = code.text.starts_with(code.title);
     const std::string meaning = is_repeated ? code.text : code.title + (code.text.empty() ? "" : ": ") + code.text;
-    if (!meaning.empty()) fmt::print("  {:>3}  {}\n", code.id, meaning);
+    if (!meaning.empty()) put("  {:>3}  {}\n", code.id, meaning);
   }
 }
 
 void print_settings(const std::vector<machine::SettingFact>& settings) {
   if (settings.empty()) return;
-  fmt::print("\nSettings ({})\n", settings.size());
+  put("\nSettings ({})\n", settings.size());
   for (const machine::SettingFact& setting : settings) {
     const std::string unit = setting.unit.empty() ? "" : " " + setting.unit;
-    fmt::print("  {:<22} {}\n", fmt::format("${}={}{}", setting.id, setting.value.value_or(""), unit), setting.name);
+    put("  {:<22} {}\n", fmt::format("${}={}{}", setting.id, setting.value.value_or(""), unit), setting.name);
   }
 }
 
@@ -78,7 +79,7 @@ void print_text(const Capabilities& machine) {
   print_codes("Alarms", machine.alarms);
   print_codes("Errors", machine.errors);
   print_settings(machine.settings);
-  if (!machine.complete) fmt::print("\nThe machine left a question unanswered, so this may not be everything.\n");
+  if (!machine.complete) put("\nThe machine left a question unanswered, so this may not be everything.\n");
 }
 
 /// Connects, waits until the session knows the controller, and leaves it as it was.
@@ -146,7 +147,7 @@ ExitStatus describe_machine(const DescribeOptions& options) {
   if (interrupted) return ExitStatus::Interrupted;
   if (!found) return ExitStatus::NoConnection;
   if (options.json) {
-    fmt::print("{}\n", io::print(io::to_json(*found), 2));
+    put("{}\n", io::print(io::to_json(*found), 2));
   } else {
     print_text(*found);
   }

@@ -193,7 +193,7 @@ void JobRunner::ask_if_held(const job::JobState& job) {
   if (is_asking_ || wish_ == Wish::Stop || wish_ == Wish::Abort) return;
   is_asking_ = true;
   const std::string where = fmt::format("Held at line {}. {}", job.progress.file_line, held_sentence(job.hold_cause));
-  view_.asked(can_ask_ ? where + " [c]ontinue or [s]top?" : where + " Interrupt (SIGINT) to stop the job.");
+  view_.asked(can_ask_ ? where + " [c]ontinue or [s]top? " : where + " Interrupt (SIGINT) to stop the job.");
 }
 
 void JobRunner::end_job(const job::JobState& job) {

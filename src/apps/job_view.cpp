@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "apps/commands.hpp"
+#include "apps/output.hpp"
 #include "apps/progress_text.hpp"
 #include "apps/terminal.hpp"
 #include "io/json.hpp"
@@ -55,15 +56,21 @@ class TerminalView final : public JobView {
   }
 
   void progressed(const job::JobState& job, const machine::Snapshot& snapshot) override {
+    if (job.phase != job::JobPhase::Held) question_.clear();
     if (!pace_.is_due()) return;
     compose(job, snapshot);
     draw();
   }
 
   void alarm_raised(const session::AlarmRaised& alarm) override { line(alarm_sentence(alarm)); }
-  void asked(std::string_view question) override { line(question); }
+  void asked(std::string_view question) override {
+    erase();
+    question_ = question;
+    draw();
+  }
 
   void ended(const job::JobState& job, const machine::Snapshot& snapshot, ExitStatus status) override {
+    question_.clear();
     compose(job, snapshot);
     draw();
     is_drawn_ = false;  // the last state stays to be seen
@@ -76,7 +83,7 @@ class TerminalView final : public JobView {
   void finish(const std::string& text, ExitStatus status) {
     erase();
     if (status == ExitStatus::Done) {
-      fmt::print("{}\n", text);
+      put("{}\n", text);
     } else {
       complain(text);
     }
@@ -84,7 +91,7 @@ class TerminalView final : public JobView {
 
   void line(std::string_view text) {
     erase();
-    fmt::print("{}\n", text);
+    put("{}\n", text);
     draw();
   }
 
@@ -93,25 +100,26 @@ class TerminalView final : public JobView {
     rows_ = progress_bar(job, columns, utf8_) + "\x1b[K\n" + machine_line(snapshot, columns) + "\x1b[K\n";
   }
 
-  /// Two rows; the cursor rests below them.
+  /// Two rows, and a third with the question if there is one; the cursor rests at its end.
   void draw() {
     if (rows_.empty()) return;
-    fmt::print("{}{}", is_drawn_ ? kTwoRowsUp : "", rows_);
+    put("{}{}{}\x1b[J", is_drawn_ ? kTwoRowsUp : "", rows_, question_);
     is_drawn_ = true;
     std::fflush(stdout);
   }
 
   void erase() {
-    if (is_drawn_) fmt::print("{}\x1b[J", kTwoRowsUp);
+    if (is_drawn_) put("{}\x1b[J", kTwoRowsUp);
     is_drawn_ = false;
     std::fflush(stdout);
   }
 
-  static constexpr std::string_view kTwoRowsUp = "\x1b[2A\r";
+  static constexpr std::string_view kTwoRowsUp = "\r\x1b[2A";
 
   Pace pace_{100ms};
   const bool utf8_ = shows_utf8();
   std::string rows_;
+  std::string question_;
   bool is_drawn_ = false;
 };
 
@@ -148,7 +156,7 @@ class LineView final : public JobView {
 
  private:
   static void line(std::string_view text) {
-    fmt::print("{}\n", text);
+    put("{}\n", text);
     std::fflush(stdout);
   }
 
@@ -210,7 +218,7 @@ class JsonView final : public JobView {
   }
 
   static void emit(const io::Json& json) {
-    fmt::print("{}\n", io::print(json));
+    put("{}\n", io::print(json));
     std::fflush(stdout);
   }
 

@@ -8,6 +8,8 @@
 #include <histedit.h>
 #include <unistd.h>
 
+#include "apps/output.hpp"
+
 namespace kerf::apps {
 namespace {
 
@@ -44,11 +46,11 @@ class LineEditor final : public InputReader {
     end_line();
     history_end(history_);
     el_end(editor_);
-    fmt::print("\n");
+    put("\n");
   }
 
   void print(std::string_view line) override {
-    fmt::print("{}{}\n", is_editing_ ? "\r\x1b[K" : "", line);
+    put("{}{}\n", is_editing_ ? "\r\x1b[K" : "", line);
     std::fflush(stdout);
     if (is_editing_) el_set(editor_, EL_REFRESH);
   }
@@ -59,7 +61,7 @@ class LineEditor final : public InputReader {
     if (length == 0) return false;
     el_cursor(editor_, length);
     el_deletestr(editor_, length);
-    fmt::print("\r\x1b[K");
+    put("\r\x1b[K");
     std::fflush(stdout);
     el_set(editor_, EL_REFRESH);
     return true;
@@ -131,7 +133,7 @@ class PlainReader final : public InputReader {
         watch_(std::make_unique<io::ReadableWatch>(loop, STDIN_FILENO, [this] { read(); })) {}
 
   void print(std::string_view line) override {
-    fmt::print("{}\n", line);
+    put("{}\n", line);
     std::fflush(stdout);
   }
 

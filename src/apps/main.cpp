@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "apps/commands.hpp"
+#include "apps/output.hpp"
 
 namespace {
 
@@ -158,7 +159,7 @@ int start(int argc, char** argv) {
   add_ports(kerf, chosen);
   add_verify(kerf, chosen);
   if (argc < 2) {
-    fmt::print("{}", kerf.help());
+    kerf::apps::put("{}", kerf.help());
     return static_cast<int>(ExitStatus::Usage);
   }
   try {

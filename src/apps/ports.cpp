@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "apps/commands.hpp"
+#include "apps/output.hpp"
 #include "common/vocabulary/dialect.hpp"
 #include "io/json.hpp"
 
@@ -50,7 +51,7 @@ std::string description_of(const io::SerialPort& port) {
 }
 
 void print_row(std::string_view url, std::string_view description) {
-  fmt::print("  {:<28} {}\n", url, description);
+  put("  {:<28} {}\n", url, description);
 }
 
 }  // namespace
@@ -58,20 +59,20 @@ void print_row(std::string_view url, std::string_view description) {
 ExitStatus list_ports(const PortsOptions& options) {
   const PortList list = find_ports();
   if (options.json) {
-    fmt::print("{}\n", io::print(io::to_json(list), 2));
+    put("{}\n", io::print(io::to_json(list), 2));
     return ExitStatus::Done;
   }
-  fmt::print("Serial ports\n");
+  put("Serial ports\n");
   for (const io::SerialPort& port : list.serial) {
     print_row(port.path, description_of(port));
     if (!port.by_id.empty()) print_row("", "always " + port.by_id);
   }
-  if (list.serial.empty()) fmt::print("  none: plug the machine in, switch it on and look again\n");
-  fmt::print("\nNetwork\n");
+  if (list.serial.empty()) put("  none: plug the machine in, switch it on and look again\n");
+  put("\nNetwork\n");
   for (const Candidate& candidate : list.network) print_row(candidate.url, candidate.description);
-  fmt::print("\nVirtual machines, always there\n");
+  put("\nVirtual machines, always there\n");
   for (const Candidate& candidate : list.virtual_machines) print_row(candidate.url, candidate.description);
-  fmt::print("\nAny of these is what --machine takes, for example: kerf info --machine virtual:grblhal\n");
+  put("\nAny of these is what --machine takes, for example: kerf info --machine virtual:grblhal\n");
   return ExitStatus::Done;
 }
 

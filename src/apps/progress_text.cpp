@@ -77,7 +77,8 @@ std::string state_text(const machine::Snapshot& snapshot) {
   if (snapshot.state == MachineState::Hold && snapshot.substate == vocabulary::kHoldDecelerating) {
     return "Hold (decelerating)";
   }
-  return std::string(name_of(snapshot.state));
+  // Right after a reset nobody knows.
+  return snapshot.state == MachineState::Unknown ? std::string() : std::string(name_of(snapshot.state));
 }
 
 std::string progress_bar(const job::JobState& job, int columns, bool with_utf8) {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "apps/commands.hpp"
+#include "apps/output.hpp"
 #include "io/event_loop.hpp"
 #include "io/machine_url.hpp"
 #include "io/text_file.hpp"
@@ -161,13 +162,13 @@ Result run_virtually(const Talk& talk) {
 
 void print_result(const NamedTalk& talk, const Result& result, bool verbose) {
   if (!result.skipped_because.empty()) {
-    fmt::print("skip  {}  ({})\n", talk.file, result.skipped_because);
+    put("skip  {}  ({})\n", talk.file, result.skipped_because);
   } else if (result.failure) {
-    fmt::print("FAIL  {}:{}: {}: {}\n", talk.file, result.failure->line, result.failure->step, result.failure->what);
+    put("FAIL  {}:{}: {}: {}\n", talk.file, result.failure->line, result.failure->step, result.failure->what);
   } else {
-    fmt::print("ok    {}\n", talk.file);
+    put("ok    {}\n", talk.file);
   }
-  if (verbose || result.failure) fmt::print("{}", result.record);
+  if (verbose || result.failure) put("{}", result.record);
   std::fflush(stdout);
 }
 
@@ -190,7 +191,7 @@ ExitStatus hold_talks(const std::vector<NamedTalk>& talks, const VerifyOptions& 
       ++passed;
     }
   }
-  fmt::print("{} passed, {} failed, {} skipped\n", passed, failed, skipped);
+  put("{} passed, {} failed, {} skipped\n", passed, failed, skipped);
   return failed > 0 ? ExitStatus::Refused : ExitStatus::Done;
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "apps/commands.hpp"
+#include "apps/output.hpp"
 #include "firmware/personality.hpp"
 #include "firmware/stored_state.hpp"
 #include "firmware/virtual_controller.hpp"
@@ -112,7 +113,7 @@ class VirtualMachine {
 
  private:
   static void say(std::string_view sentence) {
-    fmt::print("{}\n", sentence);
+    put("{}\n", sentence);
     std::fflush(stdout);
   }
 
@@ -151,8 +152,8 @@ ExitStatus serve(const VirtualOptions& options, vocabulary::Firmware personality
   constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
   const io::SignalWatch signals(loop, kSignals, [&](int) { loop.stop(); });
   machine.power_on();
-  fmt::print("A virtual {} runs {} at {}.\nTry: kerf run examples/coaster.nc --machine {}\nCtrl-C ends it.\n",
-             name_of(personality), pace_text(speed), fmt::join(*places, " and "), places->front());
+  put("A virtual {} runs {} at {}.\nTry: kerf run examples/coaster.nc --machine {}\nCtrl-C ends it.\n",
+      name_of(personality), pace_text(speed), fmt::join(*places, " and "), places->front());
   std::fflush(stdout);
   loop.run();
   return ExitStatus::Done;

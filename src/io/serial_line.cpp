@@ -5,8 +5,22 @@
 #include <asm/termbits.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 namespace kerf::io {
+namespace {
+
+/// A pty's client side (Linux: UNIX98_PTY_SLAVE_MAJOR and the seven after it).
+bool is_pty(int descriptor) {
+  constexpr unsigned kFirstMajor = 136;
+  constexpr unsigned kLastMajor = 143;
+  struct stat status{};
+  if (::fstat(descriptor, &status) != 0) return false;
+  return major(status.st_rdev) >= kFirstMajor && major(status.st_rdev) <= kLastMajor;
+}
+
+}  // namespace
 
 int prepare_serial_line(int descriptor, int baud) {
   termios2 line{};
@@ -20,6 +34,8 @@ int prepare_serial_line(int descriptor, int baud) {
 
 int claim_serial_line(int descriptor) {
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return errno;
+  // On a pty the mark would outlive this program, because the other program keeps the terminal open.
+  if (is_pty(descriptor)) return 0;
   return ::ioctl(descriptor, TIOCEXCL) == 0 ? 0 : errno;
 }
 

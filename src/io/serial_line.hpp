@@ -9,8 +9,8 @@ namespace kerf::io {
 /// touched. Returns 0 or the system's error number; EINVAL means the driver cannot do that rate.
 [[nodiscard]] int prepare_serial_line(int descriptor, int baud);
 
-/// Claims the port for this program: TIOCEXCL keeps other users out, an advisory lock also programs of the superuser.
-/// Returns 0 or the system's error number; EWOULDBLOCK means that another program holds it.
+/// Claims the port for this program: TIOCEXCL keeps everybody but the superuser out, an advisory lock also him. A pty
+/// gets the lock only. Returns 0 or the system's error number; EWOULDBLOCK means that another program holds it.
 [[nodiscard]] int claim_serial_line(int descriptor);
 
 /// Throws away what arrived before anybody listened.

@@ -73,7 +73,8 @@ std::string explain(const MachineUrl& url, const TransportError& error) {
     case TransportFault::TimedOut:
       return fmt::format("{} does not answer: check that the machine is on and the address is right.", place);
     case TransportFault::Unplugged:
-      return fmt::format("Nothing is on {} any more: check the cable and the machine's power, then try again.", place);
+      return fmt::format(
+          "There is nothing behind {} (any more): check the cable and the machine's power, then try again.", place);
     case TransportFault::ClosedByPeer:
       return fmt::format("{} closed the connection: is another sender connected, or did the machine restart?", place);
     case TransportFault::Failed: break;

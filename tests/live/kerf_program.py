@@ -129,7 +129,7 @@ class OnTerminal:
     def __init__(self, *arguments):
         self.process_id, self.terminal = pty.fork()
         if self.process_id == 0:
-            os.environ.update(TERM="xterm", LC_ALL="C.UTF-8", XDG_STATE_HOME=tempfile.gettempdir())
+            os.environ.update(TERM="xterm", LC_ALL="C.UTF-8")
             try:
                 os.execv(KERF, [KERF, *arguments])
             finally:
@@ -180,7 +180,7 @@ class OnTerminal:
 
 
 class Peer:
-    """A TCP server of the test's own, for peers that are no controller. `answer` gets what came and gives what to say."""
+    """A TCP server of the test's own, for peers that are no controller. `answer` turns what came into what to say."""
 
     def __init__(self, answer=lambda heard: b""):
         self.socket = socket.create_server(("127.0.0.1", 0))

@@ -5,7 +5,8 @@ import pty
 import socket
 import unittest
 
-from kerf_program import (ALARM, NO_CONNECTION, USAGE, LiveTest, Peer, Running, VirtualMachine, example, free_port, kerf)
+from kerf_program import (
+    ALARM, NO_CONNECTION, USAGE, LiveTest, Peer, Running, VirtualMachine, example, free_port, kerf)
 
 
 class Files(LiveTest):

@@ -2,9 +2,10 @@
 
 import json
 import os
+import subprocess
 import unittest
 
-from kerf_program import (DONE, PERSONALITIES, REFUSED, LiveTest, OnTerminal, VirtualMachine, example, kerf)
+from kerf_program import DONE, KERF, PERSONALITIES, REFUSED, LiveTest, OnTerminal, VirtualMachine, example, kerf
 
 
 class Jobs(LiveTest):
@@ -25,6 +26,18 @@ class Jobs(LiveTest):
                 result = kerf("run", example("facing.nc"), "--machine", "pty://" + path)
                 self.assertEqual(result.returncode, DONE, result.stdout + result.stderr)
             self.assertFalse(os.path.lexists(path))
+
+    def test_over_a_serial_line_at_an_odd_rate(self):
+        path = os.path.join(self.folder, "machine")
+        with VirtualMachine("grbl", tcp=False, pty_path=path):
+            result = kerf("run", example("laser_label.nc"), "--machine", f"serial://{path}?baud=250000")
+            self.assertEqual(result.returncode, DONE, result.stdout + result.stderr)
+
+    def test_nobody_reads_the_log(self):
+        with subprocess.Popen([KERF, "run", example("facing.nc"), "--machine", "virtual:grbl?speed=max"],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+            run.stdout.close()
+            self.assertEqual(run.wait(60), DONE, run.stderr.read())
 
     def test_inside_the_process(self):
         for personality in PERSONALITIES:
