@@ -86,7 +86,6 @@ struct Board {
 
   const Personality& personality;
   StoredState stored;
-  unsigned stored_revision = 0;
   SettingsStore settings;
   std::vector<std::string> rejected_settings;
   Outbox outbox;
@@ -97,23 +96,22 @@ struct Board {
 
   /// The last instant that went in.
   Instant now{};
-  bool cold_start = true;
-
-  MachineState state = MachineState::Idle;
-  bool hold_complete = false;
-  DoorPhase door = DoorPhase::Closed;
+  unsigned stored_revision = 0;
   int alarm = 0;
+  MachineState state = MachineState::Idle;
+  DoorPhase door = DoorPhase::Closed;
+  AxisMask homed = 0;
+  AxisMask tool_reference_axes = 0;
+  bool cold_start = true;
+  bool hold_complete = false;
   /// Nothing but a reset helps.
   bool critical = false;
   bool probing = false;
-  bool soft_limit_stop = false;
   bool auto_reporting = false;
   bool tool_acknowledged = false;
-  AxisMask homed = 0;
-  AxisValues home_position_mm{};
   bool position_lost = false;
+  AxisValues home_position_mm{};
   AxisValues tool_reference_mm{};
-  AxisMask tool_reference_axes = 0;
 
   Accessories accessories;
   OverrideState overrides;

@@ -12,8 +12,8 @@ using vocabulary::FeedbackText;
 namespace {
 
 // gnea/grbl config.h SAFETY_DOOR_SPINDLE_DELAY and SAFETY_DOOR_COOLANT_DELAY; grblHAL has settings for them.
-constexpr double kSpindleRestoreDelay_s = 4.0;
-constexpr double kCoolantRestoreDelay_s = 1.0;
+constexpr double kSpindleRestoreSeconds = 4.0;
+constexpr double kCoolantRestoreSeconds = 1.0;
 constexpr unsigned kRestoreAfterHoldBit = 1;
 
 bool is_spinning(const Accessories& accessories) {
@@ -236,7 +236,7 @@ void Cycle::restore_next() {
     wanted.spindle = to_restore_.spindle;
     wanted.programmed_rpm = to_restore_.programmed_rpm;
     board_.set_accessories(wanted);
-    restored_at_ = board_.now + base::from_seconds(delay_s(board_, setting::kDoorSpindleDelay, kSpindleRestoreDelay_s));
+    restored_at_ = board_.now + base::from_seconds(delay_s(board_, setting::kDoorSpindleDelay, kSpindleRestoreSeconds));
     return;
   }
   if (restoring_ != Restoring::Coolant && (to_restore_.flood || to_restore_.mist)) {
@@ -244,7 +244,7 @@ void Cycle::restore_next() {
     wanted.flood = to_restore_.flood;
     wanted.mist = to_restore_.mist;
     board_.set_accessories(wanted);
-    restored_at_ = board_.now + base::from_seconds(delay_s(board_, setting::kDoorCoolantDelay, kCoolantRestoreDelay_s));
+    restored_at_ = board_.now + base::from_seconds(delay_s(board_, setting::kDoorCoolantDelay, kCoolantRestoreSeconds));
     return;
   }
   restoring_ = Restoring::No;

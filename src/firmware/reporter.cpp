@@ -49,9 +49,8 @@ std::vector<std::string> parser_state_words(const Board& board) {
   std::string text;
   gcode::append_modal_words(board.interpreter.state(), board.interpreter.offsets(), board.interpreter.rules(), style,
                             text);
-  std::vector<std::string> words;
-  for (const std::string_view word : base::split(text, ' ')) words.emplace_back(word);
-  return words;
+  const auto parts = base::split(text, ' ');
+  return {parts.begin(), parts.end()};
 }
 
 bool is_grblhal_like(const Board& board) {
@@ -74,6 +73,7 @@ bool Reporter::is_busy() const {
 std::vector<double> Reporter::in_report_units(const AxisValues& mm) const {
   const double scale = board_.settings.flag(setting::kReportInches) ? 1.0 / kMmPerInch : 1.0;
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(board_.settings.axes()));
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(board_.settings.axes()); ++axis) {
     values.push_back(static_cast<double>(mm.at(axis)) * scale);
   }

@@ -18,7 +18,7 @@ using Checked = std::expected<std::string, ErrorCode>;
 
 namespace {
 
-constexpr int kGrblShortestPulse_us = 3;
+constexpr int kGrblShortestPulse = 3;
 constexpr std::uint32_t kByte = 0xFF;
 
 /// Digits that the firmware prints behind the point; its defaults show them.
@@ -114,7 +114,7 @@ Checked check_setting_grbl(const SettingsStore& store, const SettingMatch& match
   if (row.type == SettingType::Decimal) return print_decimal(row, static_cast<double>(number->value));
   // Integers are cut to a byte without a check (gnea/grbl settings.c).
   const auto value = static_cast<std::uint32_t>(number->value) & kByte;
-  if (row.id == 0 && value < kGrblShortestPulse_us) return std::unexpected(ErrorCode::StepPulseTooShort);
+  if (row.id == 0 && value < kGrblShortestPulse) return std::unexpected(ErrorCode::StepPulseTooShort);
   if (needs_homing(row) && value != 0 && !store.flag(setting::kHoming)) {
     return std::unexpected(ErrorCode::SoftLimitNeedsHoming);
   }
