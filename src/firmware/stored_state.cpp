@@ -97,14 +97,14 @@ std::string print(const StoredState& state) {
   if (!state.initialised) return {};
   std::string text{kHeader};
   text += '\n';
-  for (const auto& [id, value] : state.settings) text += "$" + id + "=" + value + "\n";
+  for (const auto& [id, value] : state.settings) text.append("$").append(id).append("=").append(value).append("\n");
   for (std::size_t index = 0; index < state.startup_lines.size(); ++index) {
     if (state.startup_lines.at(index).empty()) continue;
-    text += "$N" + std::to_string(index) + "=" + state.startup_lines.at(index) + "\n";
+    text.append("$N").append(std::to_string(index)).append("=").append(state.startup_lines.at(index)).append("\n");
   }
-  if (!state.user_text.empty()) text += "$I=" + state.user_text + "\n";
+  if (!state.user_text.empty()) text.append("$I=").append(state.user_text).append("\n");
   for (const auto& [name, values] : state.offsets) {
-    text += "[" + name;
+    text.append("[").append(name);
     char separator = ':';
     for (const double value : values) {
       text += separator;
