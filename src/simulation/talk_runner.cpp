@@ -31,8 +31,8 @@ TalkOutcome run_talk(const Talk& talk) {
   TalkConversation conversation(talk, now);
   // A talk begins with all switches off and places the homing switches that it needs.
   for (std::size_t axis = 0; axis < vocabulary::kMaxAxes; ++axis) {
-    controller.submit(now, firmware::HomingSwitchMoved{.axis = static_cast<vocabulary::Axis>(axis),
-                                                       .distance_mm = std::nullopt});
+    controller.submit(
+        now, firmware::HomingSwitchMoved{.axis = static_cast<vocabulary::Axis>(axis), .distance_mm = std::nullopt});
   }
   controller.power_on(now);
   int turns = 0;
