@@ -86,7 +86,10 @@ Board::Board(const Personality& owner, StoredState memory)
 void Board::plan(const AxisValues& target_mm, const gcode::Feed& feed) {
   ++blocks_planned;
   block_targets_mm.at(blocks_planned % kMostBlocks) = target_mm;
-  planner.plan({.target_mm = target_mm, .feed = feed, .source_line = blocks_planned});
+  const auto added = planner.plan({.target_mm = target_mm, .feed = feed, .source_line = blocks_planned});
+  if (motion_log && added == motion::Planner::Added::Queued) {
+    motion_log->planned(lines_read, planner.at(planner.block_count() - 1));
+  }
 }
 
 void Board::say(FeedbackText text) {
@@ -198,6 +201,7 @@ void Board::sync_position() {
 }
 
 void Board::flush_motion() {
+  if (motion_log && executor.executing() != nullptr) motion_log->ended(now, steps());
   planner.clear();
   executor.reset(now);
   motion_messages.clear();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "common/vocabulary/alarms.hpp"
 #include "common/vocabulary/machine_state.hpp"
 #include "common/vocabulary/messages.hpp"
+#include "firmware/motion_log.hpp"
 #include "firmware/outbox.hpp"
 #include "firmware/personality.hpp"
 #include "firmware/settings_store.hpp"
@@ -124,6 +126,11 @@ struct Board {
   std::uint32_t blocks_planned = 0;
   /// Targets of the blocks that may still be queued, by number.
   std::vector<AxisValues> block_targets_mm;
+
+  /// Lines that were read since power-on.
+  std::uint32_t lines_read = 0;
+  /// Kept only if the owner asked for it.
+  std::optional<MotionLog> motion_log;
 
   /// Queues one line; the planner must have room.
   void plan(const AxisValues& target_mm, const gcode::Feed& feed);

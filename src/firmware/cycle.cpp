@@ -280,6 +280,7 @@ bool Cycle::kill() {
   motion_ended_ = false;
   contacts_.clear();
   board_.hold_complete = false;
+  if (board_.motion_log && was_moving) board_.motion_log->ended(board_.now, board_.steps());
   board_.executor.reset(board_.now);
   return was_moving;
 }
@@ -308,13 +309,16 @@ void Cycle::advance() {
 void Cycle::handle(const motion::ExecutorEvent& event) {
   std::visit(base::Overloaded{
                  [&](const motion::BlockStarted& started) {
+                   if (board_.motion_log) board_.motion_log->began(started.at);
                    auto& messages = board_.motion_messages;
                    while (!messages.empty() && messages.front().block <= started.source_line) {
                      board_.say(protocol::Feedback{.text = messages.front().text});
                      messages.pop_front();
                    }
                  },
-                 [](const motion::BlockFinished&) {},
+                 [&](const motion::BlockFinished& finished) {
+                   if (board_.motion_log) board_.motion_log->ended(finished.at, finished.steps);
+                 },
                  [&](const motion::MotionEnded&) {
                    motion_ended_ = true;
                    if (halt_ != Halt::None) {
@@ -323,7 +327,10 @@ void Cycle::handle(const motion::ExecutorEvent& event) {
                      end_motion();
                    }
                  },
-                 [&](const motion::HoldComplete&) { come_to_rest(); },
+                 [&](const motion::HoldComplete& hold) {
+                   if (board_.motion_log) board_.motion_log->ended(hold.at, board_.steps());
+                   come_to_rest();
+                 },
                  [&](const motion::ThresholdCrossed& contact) { contacts_.push_back(contact); },
              },
              event);

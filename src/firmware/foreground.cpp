@@ -102,6 +102,7 @@ bool Foreground::locks_gcode() const {
 
 void Foreground::begin_line(const gcode::ReadLine& line) {
   in_line_ = true;
+  ++board_.lines_read;
   if (line.overlong) {
     steps_.emplace_back(Answer{.code = ErrorCode::LineTooLong});
   } else if (line.text.empty()) {

@@ -85,6 +85,7 @@ void Homing::lock(AxisMask axes) {
 
 void Homing::end_move() {
   moving_ = false;
+  if (board_.motion_log) board_.motion_log->ended(board_.now, board_.steps());
   board_.executor.reset(board_.now);
   board_.planner.clear();
   settled_at_ = board_.now +

@@ -150,4 +150,24 @@ vocabulary::AxisSteps VirtualController::position_steps() const {
   return parts_->board.steps();
 }
 
+std::vector<double> VirtualController::position_mm() const {
+  const Board& board = parts_->board;
+  const vocabulary::AxisSteps steps = board.steps();
+  std::vector<double> mm(static_cast<std::size_t>(board.settings.axes()));
+  for (std::size_t axis = 0; axis < mm.size(); ++axis) {
+    mm[axis] =
+        static_cast<double>(steps.at(axis)) / static_cast<double>(board.planner.settings().steps_per_mm.at(axis));
+  }
+  return mm;
+}
+
+void VirtualController::keep_motion_log() {
+  parts_->board.motion_log.emplace();
+}
+
+const MotionLog& VirtualController::motion_log() const {
+  static const MotionLog kEmpty;
+  return parts_->board.motion_log ? *parts_->board.motion_log : kEmpty;
+}
+
 }  // namespace kerf::firmware

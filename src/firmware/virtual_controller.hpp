@@ -10,6 +10,7 @@
 #include "common/base/time.hpp"
 #include "common/vocabulary/axis.hpp"
 #include "common/vocabulary/machine_state.hpp"
+#include "firmware/motion_log.hpp"
 #include "firmware/personality.hpp"
 #include "firmware/stored_state.hpp"
 #include "firmware/workcell.hpp"
@@ -52,6 +53,13 @@ class VirtualController {
   [[nodiscard]] vocabulary::MachineState state() const;
   /// Machine position in motor steps at the last instant that went in.
   [[nodiscard]] vocabulary::AxisSteps position_steps() const;
+  /// The same in mm, one value for each axis that the machine has.
+  [[nodiscard]] std::vector<double> position_mm() const;
+
+  /// From now on every block is written down.
+  void keep_motion_log();
+  /// Empty unless it is kept.
+  [[nodiscard]] const MotionLog& motion_log() const;
 
  private:
   struct Parts;
