@@ -53,6 +53,32 @@ struct VerifyOptions {
 };
 [[nodiscard]] ExitStatus verify(const VerifyOptions& options);
 
+/// A virtual machine for `conform` and `simulate`.
+struct CaseMachineOptions {
+  std::string personality = "grblhal";
+  std::string settings_file;
+  std::string limit_switches;              ///< `X,Y,Z` in mm from the power-up position; empty: there are none
+  std::optional<double> probe_contact_mm;  ///< none: there is nothing to touch
+};
+
+struct ConformOptions {
+  std::string file;
+  CaseMachineOptions machine;
+};
+[[nodiscard]] ExitStatus conform(const ConformOptions& options);
+
+struct SimulateOptions {
+  std::string file;
+  CaseMachineOptions machine;
+  bool json = false;
+  std::string trace_file;
+  std::string positions_file;
+  double every_s = 0.01;
+  std::vector<std::string> inject;
+  std::string link = "saturated";
+};
+[[nodiscard]] ExitStatus simulate(const SimulateOptions& options);
+
 /// Says what went wrong on standard error, as one sentence behind the program's name.
 void complain(const std::string& sentence);
 

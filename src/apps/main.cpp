@@ -125,6 +125,56 @@ void add_verify(CLI::App& kerf, Chosen& chosen) {
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::verify(*options); }; });
 }
 
+void add_case_machine(CLI::App& command, kerf::apps::CaseMachineOptions& machine) {
+  command
+      .add_option("-p,--personality", machine.personality, "Which firmware the machine runs: grbl, rabbit or grblhal")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--settings", machine.settings_file, "The machine has the $n=value lines of this file")
+      ->type_name("FILE");
+  command
+      .add_option("--limit-switch-at", machine.limit_switches,
+                  "Where the limit switches close, in mm from where the machine was switched on")
+      ->type_name("X,Y,Z");
+  command.add_option("--probe-contact-at", machine.probe_contact_mm, "The machine Z in mm at which the probe closes")
+      ->type_name("Z");
+}
+
+void add_conform(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::ConformOptions>();
+  CLI::App* command = kerf.add_subcommand("conform", "Ask a virtual machine the questions of a .jsonl file");
+  command->add_option("FILE", options->file, "One case a line, as a JSON object")->required()->type_name("");
+  add_case_machine(*command, options->machine);
+  command->footer("\nPrints one record of answers a case, to compare with those of real firmware.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::conform(*options); }; });
+}
+
+void add_simulate(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::SimulateOptions>();
+  CLI::App* command =
+      kerf.add_subcommand("simulate", "Run a file on a virtual machine at once, and say how long it takes");
+  command->add_option("FILE", options->file, "The G-code file")->required()->type_name("");
+  add_case_machine(*command, options->machine);
+  command->add_flag("--json", options->json, "Print the result as one JSON object");
+  command->add_option("--trace", options->trace_file, "Write a table of all blocks and their times")->type_name("CSV");
+  CLI::Option* positions =
+      command->add_option("--positions", options->positions_file, "Write a table of positions over time")
+          ->type_name("CSV");
+  command->add_option("--every", options->every_s, "Seconds between two positions")
+      ->type_name("S")
+      ->needs(positions)
+      ->capture_default_str();
+  command->add_option("--inject", options->inject, "A realtime byte and its second, such as 1.5:0x21 for a feed hold")
+      ->type_name("T:0xBB");
+  command
+      ->add_option("--link", options->link,
+                   "How lines arrive: as fast as they are read, or over a serial port of this baud rate")
+      ->type_name("saturated|BAUD")
+      ->capture_default_str();
+  command->footer("");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::simulate(*options); }; });
+}
+
 /// What is wrong with the command line, as one sentence that ends with what to do.
 std::string sentence_of(const CLI::App& kerf, const CLI::ParseError& error, std::string_view first_word) {
   std::string help = "kerf --help";
@@ -158,6 +208,8 @@ int start(int argc, char** argv) {
   add_console(kerf, chosen);
   add_ports(kerf, chosen);
   add_verify(kerf, chosen);
+  add_conform(kerf, chosen);
+  add_simulate(kerf, chosen);
   if (argc < 2) {
     kerf::apps::put("{}", kerf.help());
     return static_cast<int>(ExitStatus::Usage);

@@ -72,7 +72,7 @@ std::string_view name_of(StoredOffset which) {
 Board::Board(const Personality& owner, StoredState memory)
     : personality(owner),
       stored(std::move(memory)),
-      settings(owner),
+      settings(owner, axes_of(owner, stored)),
       rejected_settings(settings.load(stored)),
       outbox(protocol::style_of(owner.dialect())),
       interpreter(gcode::rules_for(owner.firmware)),

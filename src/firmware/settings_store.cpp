@@ -22,8 +22,16 @@ std::string default_text(const SettingRow& row, int axes) {
 
 }  // namespace
 
-SettingsStore::SettingsStore(const Personality& personality)
-    : personality_(personality), rows_(personality.dialect().settings), axes_(personality.dialect().axes_default) {
+int axes_of(const Personality& personality, const StoredState& stored) {
+  int axes = personality.dialect().axes_default;
+  for (int axis = axes; axis < personality.dialect().axes_max; ++axis) {
+    if (stored.settings.contains(std::to_string(setting::kStepsPerMm + axis))) axes = axis + 1;
+  }
+  return axes;
+}
+
+SettingsStore::SettingsStore(const Personality& personality, int axes)
+    : personality_(personality), rows_(personality.dialect().settings), axes_(axes) {
   for (const SettingRow& row : rows_) {
     first_slot_.push_back(slots_.size());
     if (row.build != vocabulary::BuildOption::Usual) continue;

@@ -25,7 +25,10 @@ class SettingsStore {
     double number = 0;   ///< of `text`; 0 for texts
   };
 
-  explicit SettingsStore(const Personality& personality);
+  explicit SettingsStore(const Personality& personality)
+      : SettingsStore(personality, personality.dialect().axes_default) {}
+  /// A machine with more axes than the usual build.
+  SettingsStore(const Personality& personality, int axes);
 
   /// Defaults first, then what `stored` says. Returns the ids that this firmware does not have or refuses.
   std::vector<std::string> load(const StoredState& stored);
@@ -64,6 +67,9 @@ class SettingsStore {
   std::vector<Slot> slots_;
   std::vector<std::size_t> first_slot_;  ///< by row
 };
+
+/// A machine has the axes of the usual build, and those whose steps per mm (`$103` on) were stored.
+[[nodiscard]] int axes_of(const Personality& personality, const StoredState& stored);
 
 /// Settings whose number means the same thing everywhere (protocol.md 7.2).
 namespace setting {

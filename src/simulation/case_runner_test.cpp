@@ -1,0 +1,58 @@
+#include "simulation/case_runner.hpp"
+
+#include <chrono>
+
+#include <gtest/gtest.h>
+
+namespace kerf::simulation {
+namespace {
+
+using namespace std::chrono_literals;
+using vocabulary::Firmware;
+
+CaseMachine machine_of(Firmware firmware) {
+  CaseMachine machine{.personality = firmware::personality_of(firmware)};
+  machine.stored.initialised = true;
+  return machine;
+}
+
+TEST(CaseRunner, AnswersAndWhereTheMachineStands) {
+  const auto record = run_case({.id = "a", .lines = {"G0X1", "G20", "nonsense"}}, machine_of(Firmware::GrblHal));
+  EXPECT_EQ(record.id, "a");
+  ASSERT_EQ(record.answers.size(), 3U);
+  EXPECT_EQ(record.answers[0], "ok");
+  EXPECT_EQ(record.answers[2].substr(0, 6), "error:");
+  EXPECT_EQ(record.parser_state.substr(0, 15), "[GC:G0 G54 G17 ");
+  ASSERT_EQ(record.position_mm.size(), 3U);
+  EXPECT_NEAR(record.position_mm[0], 1.0, 0.01);
+  EXPECT_FALSE(record.offsets.empty());
+}
+
+TEST(CaseRunner, GrblRefusesToListOffsetsWhileItMoves) {
+  EXPECT_TRUE(run_case({.id = "a", .lines = {"G0X1"}}, machine_of(Firmware::Grbl)).offsets.empty());
+  EXPECT_FALSE(run_case({.id = "b", .lines = {"G0X1", "G4P0"}}, machine_of(Firmware::Grbl)).offsets.empty());
+}
+
+TEST(CaseRunner, AnAlarmOfGrblIsResetAndSwallowsTheNextLine) {
+  const auto record = run_case({.id = "a", .lines = {"G38.4Z-5F100"}}, machine_of(Firmware::Grbl));
+  EXPECT_EQ(record.answers, std::vector<std::string>{"ok"});
+  EXPECT_EQ(record.alarms, std::vector<std::string>{"ALARM:4"});
+  EXPECT_TRUE(record.parser_state.empty());
+  EXPECT_FALSE(record.offsets.empty());
+}
+
+TEST(CaseRunner, InjectedBytesArriveInTheirTime) {
+  const auto record =
+      run_case({.id = "a", .lines = {"M0"}, .inject = {{.after = 600ms, .byte = '~'}}}, machine_of(Firmware::GrblHal));
+  EXPECT_EQ(record.answers, std::vector<std::string>{"ok"});
+}
+
+TEST(CaseRunner, SetupLeavesNoAnswers) {
+  const auto record =
+      run_case({.id = "a", .lines = {"G4P0"}, .setup = {"G21", "nonsense"}}, machine_of(Firmware::Grbl));
+  EXPECT_EQ(record.answers, std::vector<std::string>{"ok"});
+  EXPECT_TRUE(record.messages.empty());
+}
+
+}  // namespace
+}  // namespace kerf::simulation

@@ -1,0 +1,255 @@
+#include "simulation/motion_trace.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <variant>
+
+#include "common/base/overloaded.hpp"
+#include "common/base/text.hpp"
+#include "common/protocol/decode.hpp"
+#include "firmware/virtual_controller.hpp"
+
+namespace kerf::simulation {
+namespace {
+
+using firmware::VirtualController;
+
+constexpr std::int64_t kBitsPerByte = 10;
+/// What a careful sender has under way at most (interpreter-cases.md).
+constexpr std::size_t kWindow = 127;
+constexpr std::size_t kGrblHalWindow = 900;
+/// More turns than any controller needs at one instant.
+constexpr int kMostTurnsAtOnce = 100'000;
+
+std::size_t window_of(vocabulary::Firmware firmware) {
+  return firmware == vocabulary::Firmware::GrblHal ? kGrblHalWindow : kWindow;
+}
+
+/// The program as bytes with LF line ends, the last line ended too.
+std::string as_sent(std::string_view program) {
+  std::string bytes;
+  bytes.reserve(program.size() + 1);
+  for (std::size_t i = 0; i < program.size(); ++i) {
+    const bool is_crlf = program[i] == '\r' && i + 1 < program.size() && program[i + 1] == '\n';
+    if (!is_crlf) bytes += program[i];
+  }
+  if (!bytes.empty() && bytes.back() != '\n') bytes += '\n';
+  return bytes;
+}
+
+/// Decides when which byte of the program arrives.
+class Feeder {
+ public:
+  Feeder(std::string bytes, ProgramLink link, std::size_t window)
+      : bytes_(std::move(bytes)), link_(link), window_(window) {
+    find_next_line();
+  }
+
+  /// When the next bytes arrive if nothing is answered before; kNever if that needs an answer or room.
+  [[nodiscard]] Instant next_arrival() const { return link_.baud && sent_ < allowed_ ? byte_at_ : kNever; }
+
+  /// What arrives now; `room` is what the receive buffer can take.
+  std::string_view take(Instant now, std::size_t room) {
+    const std::size_t first = sent_;
+    if (!link_.baud) {
+      sent_ = std::min(bytes_.size(), sent_ + room);
+    } else if (sent_ < allowed_ && byte_at_ <= now) {
+      ++sent_;
+      ++bytes_on_line_;
+      place_next_byte();
+      find_next_line();
+    }
+    return std::string_view{bytes_}.substr(first, sent_ - first);
+  }
+
+  /// A line of the program was answered.
+  void answered(Instant now) {
+    if (lines_under_way_.empty()) return;
+    under_way_ -= lines_under_way_.front();
+    lines_under_way_.pop_front();
+    const bool was_waiting = sent_ == allowed_;
+    find_next_line();
+    if (was_waiting && sent_ < allowed_ && byte_at_ < now) {
+      line_began_ = now;
+      bytes_on_line_ = 0;
+      place_next_byte();
+    }
+  }
+
+  [[nodiscard]] bool is_done() const { return sent_ == bytes_.size(); }
+
+ private:
+  /// A line may follow when all of it fits into the window.
+  void find_next_line() {
+    if (!link_.baud) return;
+    if (byte_at_ == Instant{}) place_next_byte();
+    while (allowed_ < bytes_.size()) {
+      const std::size_t length = bytes_.find('\n', allowed_) + 1 - allowed_;
+      if (under_way_ != 0 && under_way_ + length > window_) return;
+      under_way_ += length;
+      lines_under_way_.push_back(length);
+      allowed_ += length;
+    }
+  }
+
+  void place_next_byte() {
+    constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+    byte_at_ = line_began_ + Duration{(bytes_on_line_ + 1) * kBitsPerByte * kNanosecondsPerSecond / *link_.baud};
+  }
+
+  std::string bytes_;
+  ProgramLink link_;
+  std::size_t window_;
+  std::size_t sent_ = 0;
+  std::size_t allowed_ = 0;
+  std::size_t under_way_ = 0;
+  std::deque<std::size_t> lines_under_way_;
+  /// Since when the wire has been busy without a gap, and with how many bytes.
+  Instant line_began_{};
+  std::int64_t bytes_on_line_ = 0;
+  Instant byte_at_{};
+};
+
+class TraceRun {
+ public:
+  TraceRun(const ProgramRun& run, const CaseMachine& machine)
+      : run_(run),
+        controller_(machine.personality, machine.stored),
+        feeder_(as_sent(run.program), run.link, window_of(machine.personality.firmware)) {
+    for (const auto& event : machine.workcell) controller_.submit(now_, event);
+    controller_.power_on(now_);
+    controller_.advance_to(now_);
+    static_cast<void>(controller_.take_outbox());
+    controller_.keep_motion_log();
+    const std::string sent = as_sent(run.program);
+    trace_.lines = static_cast<std::uint32_t>(std::ranges::count(sent, '\n'));
+    next_sample_ = run.sample_every ? Instant{} : kNever;
+  }
+
+  MotionTrace run() {
+    int turns = 0;
+    feed();
+    for (;;) {
+      const Instant next = next_instant();
+      if (next == kNever) break;
+      turns = next > now_ ? 0 : turns + 1;
+      if (turns > kMostTurnsAtOnce) break;
+      sample_before(next);
+      now_ = std::max(now_, next);
+      controller_.advance_to(now_);
+      inject();
+      feed();
+    }
+    finish();
+    return std::move(trace_);
+  }
+
+ private:
+  [[nodiscard]] Instant next_instant() const {
+    const Instant by_itself = controller_.next_deadline();
+    if (by_itself == kNever && is_over()) return kNever;
+    return std::min({by_itself, feeder_.next_arrival(), next_injection()});
+  }
+
+  [[nodiscard]] bool is_over() const { return trace_.lines_answered >= trace_.lines; }
+
+  [[nodiscard]] Instant next_injection() const {
+    return injected_ < run_.inject.size() ? Instant{} + run_.inject[injected_].after : kNever;
+  }
+
+  void inject() {
+    for (; next_injection() <= now_; ++injected_) {
+      const char byte = static_cast<char>(run_.inject[injected_].byte);
+      controller_.on_bytes(now_, std::string_view{&byte, 1});
+    }
+  }
+
+  void feed() {
+    for (;;) {
+      listen();
+      const std::string_view bytes = feeder_.take(now_, controller_.receive_room());
+      if (bytes.empty()) return;
+      controller_.on_bytes(now_, bytes);
+    }
+  }
+
+  void listen() {
+    const std::string heard = controller_.take_outbox();
+    if (heard.empty()) return;
+    for (std::string_view line : base::split(heard, '\n')) {
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      std::visit(base::Overloaded{
+                     [&](const protocol::Ok&) { answered(0); },
+                     [&](const protocol::ErrorAnswer& error) { answered(error.code); },
+                     [&](const protocol::AlarmRaised& alarm) { trace_.alarms.push_back(alarm.code); },
+                     [](const auto&) {},
+                 },
+                 protocol::decode(line));
+    }
+  }
+
+  void answered(int code) {
+    ++trace_.lines_answered;
+    last_answer_ = now_;
+    if (code != 0) trace_.errors.push_back({.line = trace_.lines_answered, .code = code});
+    feeder_.answered(now_);
+  }
+
+  /// Samples up to, but not at, `next`: what happens at that instant comes first.
+  void sample_before(Instant next) {
+    while (next_sample_ < next) take_sample();
+  }
+
+  void take_sample() {
+    controller_.advance_to(next_sample_);
+    now_ = std::max(now_, next_sample_);
+    trace_.positions.push_back({.at_s = base::to_seconds(next_sample_ - Instant{}), .steps = steps()});
+    next_sample_ += *run_.sample_every;
+  }
+
+  [[nodiscard]] std::vector<std::int32_t> shortened(const vocabulary::AxisSteps& steps) const {
+    return {steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(controller_.position_mm().size())};
+  }
+  [[nodiscard]] std::vector<std::int32_t> steps() const { return shortened(controller_.position_steps()); }
+
+  void finish() {
+    const firmware::MotionLog& log = controller_.motion_log();
+    const Instant end = std::max(log.last_end(), last_answer_);
+    trace_.total_s = base::to_seconds(end - Instant{});
+    if (run_.sample_every) {
+      while (next_sample_ < end + *run_.sample_every) take_sample();
+    }
+    trace_.final_steps = steps();
+    trace_.final_mm = controller_.position_mm();
+    const std::size_t count = std::min(log.moves().size(), log.stretches().size());
+    trace_.blocks.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const firmware::PlannedMove& move = log.moves()[i];
+      const firmware::ExecutedStretch& stretch = log.stretches()[i];
+      trace_.blocks.push_back({.line = move.line,
+                               .start_s = base::to_seconds(stretch.began - Instant{}),
+                               .end_s = base::to_seconds(stretch.ended - Instant{}),
+                               .length_mm = static_cast<double>(move.length_mm),
+                               .rate_mm_per_min = static_cast<double>(move.rate_mm_per_min),
+                               .end_steps = shortened(stretch.end_steps)});
+    }
+  }
+
+  const ProgramRun& run_;
+  VirtualController controller_;
+  Feeder feeder_;
+  MotionTrace trace_;
+  Instant now_{};
+  Instant last_answer_{};
+  Instant next_sample_ = kNever;
+  std::size_t injected_ = 0;
+};
+
+}  // namespace
+
+MotionTrace trace_program(const ProgramRun& run, const CaseMachine& machine) {
+  return TraceRun(run, machine).run();
+}
+
+}  // namespace kerf::simulation
