@@ -123,6 +123,10 @@ vocabulary::AxisValues SettingsStore::axis_values(int id) const {
   return values;
 }
 
+bool SettingsStore::is_laser() const {
+  return personality_.has_laser_spindle && number(setting::kMode) == 1.0;
+}
+
 motion::MotionSettings SettingsStore::motion() const {
   return {
       .axes = axes_,
@@ -131,7 +135,7 @@ motion::MotionSettings SettingsStore::motion() const {
       .acceleration_mm_per_s2 = axis_values(setting::kAcceleration),
       .junction_deviation_mm = static_cast<float>(number(setting::kJunctionDeviation)),
       .arc_tolerance_mm = static_cast<float>(number(setting::kArcTolerance)),
-      .laser_mode = number(setting::kMode) == 1.0,
+      .laser_mode = is_laser(),
       .idle_delay_ms = static_cast<std::uint8_t>(mask(setting::kIdleDelay) & 0xFFU),
       .planner_blocks = static_cast<int>(number(setting::kPlannerBlocks)),
   };
@@ -139,7 +143,7 @@ motion::MotionSettings SettingsStore::motion() const {
 
 void SettingsStore::configure(gcode::InterpreterSettings& settings) const {
   settings.axes = axes_;
-  settings.laser_mode = number(setting::kMode) == 1.0;
+  settings.laser_mode = is_laser();
   if (!personality_.has_extended_settings) return;
   settings.ignore_tool_change = number(setting::kToolChangeMode) == 4.0;
   settings.g92_volatile = flag(setting::kG92Volatile);

@@ -60,6 +60,7 @@ class SettingsStore {
   [[nodiscard]] const Slot* slot_of(const vocabulary::SettingMatch& match) const;
   void set(const vocabulary::SettingMatch& match, std::string text);
   void apply_consequences();
+  [[nodiscard]] bool is_laser() const;
 
   const Personality& personality_;
   std::span<const vocabulary::SettingRow> rows_;

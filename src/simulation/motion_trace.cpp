@@ -148,7 +148,7 @@ class TraceRun {
  private:
   [[nodiscard]] Instant next_instant() const {
     const Instant by_itself = controller_.next_deadline();
-    if (by_itself == kNever && is_over()) return kNever;
+    if (by_itself == kNever && is_over() && controller_.state() == vocabulary::MachineState::Idle) return kNever;
     return std::min({by_itself, feeder_.next_arrival(), next_injection()});
   }
 

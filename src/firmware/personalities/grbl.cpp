@@ -36,6 +36,7 @@ const Personality kGrbl = {
     .realtime = {.same_instant_collapses = true, .toggles_coolant_in_jog = true},
     .stored_writes_synchronise = true,
     .soft_limits_in_check = true,
+    .has_laser_spindle = true,
     .parse_command = parse_command_grbl,
     .check_setting = check_setting_grbl,
     .commands = kCommands,
