@@ -53,9 +53,9 @@ Instant ControllerHost::virtual_now() const {
 Instant ControllerHost::real_time_of(Instant virtual_time) const {
   if (virtual_time == kNever) return kNever;
   // A deadline in a year is as good as one in a thousand years, and fits into a Duration at every speed.
-  constexpr double kYear_s = 3.2e7;
+  constexpr double kYearSeconds = 3.2e7;
   const double seconds = base::to_seconds(virtual_time - virtual_began_) / speed_.factor.value_or(1.0);
-  return real_began_ + base::from_seconds(std::min(seconds, kYear_s));
+  return real_began_ + base::from_seconds(std::min(seconds, kYearSeconds));
 }
 
 bool ControllerHost::may_jump() const {

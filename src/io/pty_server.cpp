@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// More than any burst of answers; without a reader the kernel's own 4 kB are full long before.
-constexpr std::size_t kMostWaitingBytes = 64 * 1024;
+constexpr std::size_t kMostWaitingBytes = 65536;
 
 ListenError error_of(ListenFault fault, int error_number) {
   return {.fault = fault, .system_text = boost::system::generic_category().message(error_number)};

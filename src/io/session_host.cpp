@@ -25,7 +25,7 @@ session::LinkLoss loss_of(TransportFault fault) {
 
 SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::SessionOptions options, Callbacks callbacks)
     : loop_(loop),
-      session_(with_traits_of(url, std::move(options))),
+      session_(with_traits_of(url, options)),
       callbacks_(std::move(callbacks)),
       timer_(loop),
       transport_(open_transport(loop, url,

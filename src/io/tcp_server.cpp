@@ -84,8 +84,7 @@ TcpServer::~TcpServer() {
 std::expected<TcpAddress, ListenError> TcpServer::listen(const TcpAddress& address) {
   boost::system::error_code fault;
   tcp::resolver resolver(state_->acceptor.get_executor());
-  const auto found = resolver.resolve(address.host, std::to_string(address.port),
-                                      tcp::resolver::passive | tcp::resolver::numeric_service, fault);
+  const auto found = resolver.resolve(address.host, std::to_string(address.port), tcp::resolver::passive, fault);
   if (fault || found.empty()) {
     return std::unexpected(ListenError{.fault = ListenFault::AddressUnknown, .system_text = fault.message()});
   }

@@ -39,7 +39,10 @@ std::expected<std::string, FileError> read_text_file(const std::string& path) {
   std::string text;
   if (status.st_size > 0) text.reserve(static_cast<std::size_t>(status.st_size));
   char piece[65536];
-  while (const std::size_t count = std::fread(piece, 1, sizeof piece, file.get())) text.append(piece, count);
+  for (std::size_t count = sizeof piece; count == sizeof piece;) {
+    count = std::fread(piece, 1, sizeof piece, file.get());
+    text.append(piece, count);
+  }
   if (std::ferror(file.get()) != 0) return failed(errno);
   return text;
 }
