@@ -80,7 +80,7 @@ bool write_trace(const MotionTrace& trace, const std::string& file) {
 }
 
 bool write_positions(const MotionTrace& trace, const std::string& file) {
-  std::string text = "t" + step_columns(trace.final_steps.size(), "step") + "\n";
+  std::string text;
   for (const auto& sample : trace.positions) text += fmt::format("{:.5f}{}\n", sample.at_s, joined(sample.steps));
   return write(file, text);
 }

@@ -85,6 +85,7 @@ Board::Board(const Personality& owner, StoredState memory)
 
 void Board::plan(const AxisValues& target_mm, const gcode::Feed& feed) {
   ++blocks_planned;
+  be_busy(personality.loop.for_block);
   block_targets_mm.at(blocks_planned % kMostBlocks) = target_mm;
   const auto added = planner.plan({.target_mm = target_mm, .feed = feed, .source_line = blocks_planned});
   if (motion_log && added == motion::Planner::Added::Queued) {

@@ -1,6 +1,7 @@
 #pragma once
 // What the parts of one controller share, as the firmware's global variables do: settings, parser, motion, state.
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -132,6 +133,10 @@ struct Board {
   /// Kept only if the owner asked for it.
   std::optional<MotionLog> motion_log;
 
+  /// The main loop has no time for anything new before.
+  Instant busy_until{};
+
+  void be_busy(int passes) { busy_until = std::max(busy_until, now) + passes * personality.loop.pass; }
   /// Queues one line; the planner must have room.
   void plan(const AxisValues& target_mm, const gcode::Feed& feed);
   void say(const protocol::Message& message) { outbox.say(message); }

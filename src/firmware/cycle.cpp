@@ -28,11 +28,15 @@ double delay_s(const Board& board, int setting_id, double fallback) {
 
 void Cycle::auto_start() {
   if (board_.state != MachineState::Idle || board_.planner.is_empty()) return;
-  run_or_idle();
+  const LoopTimes& loop = board_.personality.loop;
+  const Instant free_at = std::max(board_.busy_until, board_.now);
+  // The loop's passes lie on a grid that began at power-on.
+  const auto passes = (free_at - Instant{} + loop.pass - Duration{1}) / loop.pass;
+  run_or_idle(Instant{} + (passes + loop.to_start) * loop.pass - board_.now);
 }
 
-void Cycle::run_or_idle() {
-  board_.executor.cycle_start(board_.now);
+void Cycle::run_or_idle(Duration after) {
+  board_.executor.cycle_start(board_.now, after);
   const ExecutorPhase phase = board_.executor.phase();
   moving_ = phase == ExecutorPhase::Running || phase == ExecutorPhase::Decelerating;
   board_.state = moving_ ? MachineState::Run : MachineState::Idle;

@@ -66,7 +66,7 @@ class Cycle {
   void come_to_rest();
   void end_motion();
   void resume();
-  void run_or_idle();
+  void run_or_idle(Duration after = Duration::zero());
   void finish_stop();
   void finish_retract();
   void restore_next();

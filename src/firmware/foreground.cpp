@@ -103,6 +103,7 @@ bool Foreground::locks_gcode() const {
 void Foreground::begin_line(const gcode::ReadLine& line) {
   in_line_ = true;
   ++board_.lines_read;
+  board_.be_busy(board_.personality.loop.for_line);
   if (line.overlong) {
     steps_.emplace_back(Answer{.code = ErrorCode::LineTooLong});
   } else if (line.text.empty()) {

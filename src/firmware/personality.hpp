@@ -184,6 +184,16 @@ struct RealtimeRules {
   bool door_again_ignored = false;  ///< 0x84 while in Door already
 };
 
+/// How long the main loop keeps queued motion waiting while the machine rests, as in the recordings of real firmware
+/// (motion.md 2). Answers do not show it: in them it is less than a byte on the wire.
+struct LoopTimes {
+  /// One pass of the main loop: everything below is a number of these.
+  Duration pass{};
+  int for_line = 0;
+  int for_block = 0;
+  int to_start = 0;
+};
+
 /// One firmware's ways. The function pointers are named policies; everything else is a value.
 struct Personality {
   vocabulary::Firmware firmware{};
@@ -216,6 +226,7 @@ struct Personality {
   /// The board's spindle takes its power from the step interrupt, so `$32`=1 is laser mode; else S changes wait for the
   /// motion all the same (motion.md 1.5).
   bool has_laser_spindle = false;
+  LoopTimes loop{};
 
   CommandParser parse_command{};
   SettingCheck check_setting{};

@@ -36,12 +36,12 @@ std::int64_t Executor::progress_until(Instant at) const {
   return ticks_until(counts_at(at)) * StepCursor::progress_per_tick(current_.smoothing);
 }
 
-void Executor::cycle_start(Instant now) {
+void Executor::cycle_start(Instant now, Duration after) {
   advance_to(now);
   if (stage_ != Stage::Idle) return;
   held_ = false;
   preparer_.run();
-  if (!planner_.is_empty()) wake(now);
+  if (!planner_.is_empty()) wake(now + after);
 }
 
 Planner::Added Executor::start_system_motion(Instant now, const PathLine& line, SystemMotion kind) {

@@ -77,7 +77,9 @@ class Executor {
 
   /// Starts queued motion, or resumes after HoldComplete. With an empty queue a held executor just rests. Ignored while
   /// moving.
-  void cycle_start(Instant now);
+  void cycle_start(Instant now) { cycle_start(now, Duration::zero()); }
+  /// The same, but the steppers wake only `after` a while (the main loop is still busy).
+  void cycle_start(Instant now, Duration after);
   /// Decelerates to rest; HoldComplete follows. Also the first half of a motion cancel and jog cancel: after
   /// HoldComplete the caller clears planner and executor. Ignored unless Running.
   void begin_hold(Instant now);

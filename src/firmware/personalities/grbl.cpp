@@ -37,6 +37,7 @@ const Personality kGrbl = {
     .stored_writes_synchronise = true,
     .soft_limits_in_check = true,
     .has_laser_spindle = true,
+    .loop = {.pass = std::chrono::microseconds{10}, .to_start = 1},
     .parse_command = parse_command_grbl,
     .check_setting = check_setting_grbl,
     .commands = kCommands,
