@@ -56,6 +56,7 @@ class BlockSteps {
     at_mm_ = move.target_mm;
   }
   void operator()(const gcode::Dwell& dwell) {
+    if (dwell.dwell_s == 0 && board_.personality.skips_empty_dwell) return;
     steps_.insert(steps_.end(),
                   {Synchronize{}, Dwell{.left = motion::dwell_duration(board_.planner.rules(), dwell.dwell_s)}});
   }

@@ -223,6 +223,7 @@ struct Personality {
   bool stored_writes_synchronise = false;
   bool has_work_offset_sync_bit = false;  ///< `$10` bit 8; otherwise every change of WCO waits for the motion
   bool soft_limits_in_check = false;
+  bool skips_empty_dwell = false;  ///< G4 P0 does not even wait for the motion
   /// The board's spindle takes its power from the step interrupt, so `$32`=1 is laser mode; else S changes wait for the
   /// motion all the same (motion.md 1.5).
   bool has_laser_spindle = false;

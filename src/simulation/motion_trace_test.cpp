@@ -50,6 +50,19 @@ TEST(MotionTrace, ASlowLinkStarvesThePlanner) {
   EXPECT_GT(trace_program(slow, machine).total_s, trace_program(fast, machine).total_s + 0.3);
 }
 
+TEST(MotionTrace, RabbitDoesNotStopForAnEmptyDwell) {
+  const ProgramRun run{.program = "G1X5F600\nG4P0\nG1X10\n"};
+  const MotionTrace rabbit = trace_program(run, machine_of(Firmware::Rabbit));
+  EXPECT_EQ(rabbit.blocks.at(1).start_s, rabbit.blocks.at(0).end_s);
+  const MotionTrace grbl = trace_program(run, machine_of(Firmware::Grbl));
+  EXPECT_GT(grbl.blocks.at(1).start_s, grbl.blocks.at(0).end_s);
+}
+
+TEST(MotionTrace, ALengthBeyondTheStepCounterEnds) {
+  const MotionTrace trace = trace_program({.program = "G1X16777217F1000\n"}, machine_of(Firmware::Grbl));
+  EXPECT_EQ(trace.lines_answered, 1U);
+}
+
 TEST(MotionTrace, RefusedLinesAndThoseNeverAnswered) {
   const auto machine = machine_of(Firmware::Grbl);
   const MotionTrace trace = trace_program({.program = "G1X1\nG0X1\nM0\nG0X2\n"}, machine);

@@ -109,9 +109,13 @@ bool Executor::needs_refill() const {
 }
 
 void Executor::refill() {
+  constexpr int kMostEmptySegments = 100'000;
+  int empty_segments = 0;
   while (needs_refill()) {
     const auto segment = preparer_.next();
     if (!segment) return;
+    // Lengths beyond 32 bits of steps give segments without a step, without end: the stepper then finds none.
+    if (segment->ticks == 0 && ++empty_segments > kMostEmptySegments) return;
     if (segment->ticks == 0) continue;
     segments_[(first_segment_ + segment_count_) % kMostSegments] = *segment;
     ++segment_count_;

@@ -78,6 +78,7 @@ const Personality kRabbit = {
     .parameters_pause = true,
     .stored_writes_synchronise = true,
     .soft_limits_in_check = true,
+    .skips_empty_dwell = true,
     .loop = {.pass = std::chrono::microseconds{8}, .to_start = 1},
     .parse_command = parse_command_rabbit,
     .check_setting = check_setting_rabbit,
