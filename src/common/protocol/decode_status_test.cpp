@@ -1,5 +1,7 @@
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "common/protocol/decode.hpp"
 #include "common/protocol/encode.hpp"
 

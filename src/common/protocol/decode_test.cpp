@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "common/protocol/encode.hpp"
 
 namespace kerf::protocol {

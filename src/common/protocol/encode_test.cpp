@@ -1,5 +1,7 @@
 #include "common/protocol/encode.hpp"
 
+#include <gtest/gtest.h>
+
 #include "common/protocol/decode.hpp"
 
 namespace kerf::protocol {

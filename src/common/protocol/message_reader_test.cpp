@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 namespace kerf::protocol {

@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include "common/protocol/decode.hpp"

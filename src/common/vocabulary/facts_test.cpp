@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <gtest/gtest.h>
+
 #include "common/vocabulary/accessories.hpp"
 #include "common/vocabulary/alarms.hpp"
 #include "common/vocabulary/dialect.hpp"

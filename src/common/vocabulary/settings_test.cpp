@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "common/base/text.hpp"
 
 namespace kerf::vocabulary {

@@ -5,6 +5,8 @@
 #include <set>
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "common/vocabulary/accessories.hpp"
 #include "common/vocabulary/alarms.hpp"
 #include "common/vocabulary/dialect.hpp"

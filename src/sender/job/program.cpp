@@ -50,7 +50,7 @@ std::expected<std::shared_ptr<const Program>, ProgramFault> Program::load(std::s
 std::expected<std::shared_ptr<const Program>, ProgramFault> Program::load(std::string name,
                                                                           std::shared_ptr<const void> owner,
                                                                           std::string_view text) {
-  const std::shared_ptr<Program> program{new Program};
+  std::shared_ptr<Program> program{new Program};
   program->name_ = std::move(name);
   program->owner_ = std::move(owner);
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());

@@ -39,6 +39,7 @@ CodeFact look_up(const std::map<int, CodeFact>& told_facts, const vocabulary::Di
 std::vector<CodeFact> list(const std::map<int, CodeFact>& told_facts, const vocabulary::Dialect& dialect,
                            std::span<const vocabulary::CodeRow> rows) {
   std::vector<CodeFact> facts;
+  facts.reserve(told_facts.size());
   for (const auto& [id, fact] : told_facts) facts.push_back(fact);
   if (facts.empty()) {
     for (const auto& row : rows) facts.push_back(from_table(dialect, row));

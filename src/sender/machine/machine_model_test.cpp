@@ -13,7 +13,6 @@
 namespace kerf::machine {
 namespace {
 
-using testing::DoubleEq;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::Optional;

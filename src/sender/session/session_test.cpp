@@ -15,7 +15,6 @@ using namespace std::chrono_literals;
 using job::JobPhase;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
 using testing::SizeIs;
 
 /// Connected, and from now on no line is answered unless the test says so.

@@ -16,7 +16,7 @@ class ListSource final : public LineSource {
   explicit ListSource(std::deque<std::string> lines) : lines_(std::move(lines)) {}
   std::optional<SourceLine> next() override {
     if (lines_.empty()) return std::nullopt;
-    return SourceLine{.file_line = number_, .file_offset_after = number_ * 10, .text = lines_.front()};
+    return SourceLine{.file_line = number_, .file_offset_after = std::uint64_t{number_} * 10, .text = lines_.front()};
   }
   void move_on() override {
     lines_.pop_front();
