@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "apps/rehearsal.hpp"
+
 namespace kerf::apps {
 namespace {
 
@@ -35,6 +37,13 @@ ExitStatus status_of(session::Refused reason) {
     case session::Refused::NotIdentified: return ExitStatus::NoConnection;
     default: return ExitStatus::Interrupted;
   }
+}
+
+/// Seconds that pass at the machine in one second here. A clock that jumps is as good as endlessly fast.
+double clock_speed(const io::MachineUrl& url) {
+  constexpr double kJumping = 1e6;
+  const auto* address = std::get_if<io::VirtualAddress>(&url);
+  return address == nullptr ? 1.0 : address->speed.factor.value_or(kJumping);
 }
 
 std::string_view held_sentence(job::HoldCause cause) {
@@ -70,8 +79,9 @@ void JobRunner::on_event(const session::Event& event) {
 
 void JobRunner::on(const session::ControllerFound& found) {
   if (is_started_) return;
-  view_.found(found.sentence, host_->session().capabilities());
-  host_->submit(session::StartJob{program_});
+  const auto& capabilities = host_->session().capabilities();
+  view_.found(found.sentence, capabilities);
+  host_->submit(session::StartJob{program_, rehearse(*program_, capabilities, clock_speed(url_))});
 }
 
 void JobRunner::on(const session::ControllerReset& reset) {

@@ -18,11 +18,11 @@ std::string percent_text(const job::Progress& progress) {
 }
 
 std::string line_text(const job::Progress& progress) {
-  return fmt::format("line {}/{}", progress.file_line, progress.lines_total);
+  return fmt::format("line {}/{}", progress.cutting_line.value_or(progress.file_line), progress.lines_total);
 }
 
 std::string times_text(const job::Progress& progress) {
-  const auto& left = progress.remaining_at_this_pace_s;
+  const auto& left = progress.remaining_s;
   return fmt::format("{} gone, {} left", clock_text(progress.elapsed_s), left ? clock_text(*left) : "-:--");
 }
 

@@ -19,7 +19,7 @@ job::JobState half_done() {
   job.progress.file_line = 812;
   job.progress.percent = 42.9;
   job.progress.elapsed_s = 72.9;
-  job.progress.remaining_at_this_pace_s = 3700;
+  job.progress.remaining_s = 3700;
   return job;
 }
 
@@ -38,7 +38,7 @@ TEST(ProgressText, LineForALog) {
   EXPECT_EQ(progress_line(half_done(), running()),
             " 42 %  line 812/1930  1:12 gone, 1:01:40 left  F1200  X12.345 Y0.000 Z0.500  Run");
   job::JobState begun = half_done();
-  begun.progress.remaining_at_this_pace_s.reset();
+  begun.progress.remaining_s.reset();
   EXPECT_NE(progress_line(begun, running()).find("-:-- left"), std::string::npos);
 }
 

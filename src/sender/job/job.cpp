@@ -38,9 +38,10 @@ std::string line_text(std::uint32_t file_line) {
 
 }  // namespace
 
-Job::Job(Instant now, const Program& program, bool has_error_latch) : has_error_latch_(has_error_latch) {
+Job::Job(Instant now, const Program& program, bool has_error_latch, std::shared_ptr<const Timeline> timeline)
+    : has_error_latch_(has_error_latch) {
   state_.program = program.name();
-  meter_.start(now, program.line_count(), program.size_bytes());
+  meter_.start(now, program.line_count(), program.size_bytes(), std::move(timeline));
   update_progress(now);
 }
 
@@ -132,6 +133,7 @@ void Job::on_snapshot(Instant now, const machine::Snapshot& snapshot) {
   if (ended()) return;
   reported_at_ = now;
   moving_ = is_moving(snapshot);
+  if (snapshot.overrides) meter_.set_feed_override(now, snapshot.overrides->feed);
   update_progress(now);
   if (state_.phase == JobPhase::Stopping) {
     follow_stop(now, snapshot);

@@ -2,6 +2,7 @@
 // One job from its first line to its end: a state machine that is told what happens and says what to do.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "common/base/time.hpp"
 #include "sender/job/job_state.hpp"
 #include "sender/job/program.hpp"
+#include "sender/job/timeline.hpp"
 #include "sender/machine/snapshot.hpp"
 
 namespace kerf::job {
@@ -39,8 +41,8 @@ struct JobAnswer {
 /// for, and the job ends when the machine rests.
 class Job {
  public:
-  /// `has_error_latch`: an error makes the controller refuse all later lines (protocol.md 6.4).
-  Job(Instant now, const Program& program, bool has_error_latch);
+  /// `has_error_latch`: an error makes the controller refuse all later lines (protocol.md 6.4). `timeline` may be null.
+  Job(Instant now, const Program& program, bool has_error_latch, std::shared_ptr<const Timeline> timeline = nullptr);
 
   /// Takes an answer; true when it is a latched repeat of the first error, so that the line was not executed.
   bool on_answer(Instant now, const JobAnswer& answer);

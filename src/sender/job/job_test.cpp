@@ -222,7 +222,7 @@ TEST_F(JobTest, NothingLeavesAFinalPhase) {
 TEST(ProgressMeter, EstimatesFromThePaceWithoutTheHolds) {
   ProgressMeter meter;
   meter.start(Instant{}, 100, 1000);
-  EXPECT_FALSE(meter.at(Instant{10s}).remaining_at_this_pace_s);
+  EXPECT_FALSE(meter.at(Instant{10s}).remaining_s);
   meter.acknowledge(25, 250);
   meter.set_held(Instant{10s}, true);
   meter.set_held(Instant{20s}, false);
@@ -230,7 +230,34 @@ TEST(ProgressMeter, EstimatesFromThePaceWithoutTheHolds) {
   EXPECT_DOUBLE_EQ(progress.percent, 25);
   EXPECT_DOUBLE_EQ(progress.elapsed_s, 20);
   EXPECT_DOUBLE_EQ(progress.held_s, 10);
-  EXPECT_DOUBLE_EQ(*progress.remaining_at_this_pace_s, 30);
+  EXPECT_DOUBLE_EQ(*progress.remaining_s, 30);
+}
+
+TEST(ProgressMeter, FollowsTheRehearsalWhenThePlannerHasSwallowedTheProgram) {
+  ProgressMeter meter;
+  meter.start(Instant{}, 4, 40, std::make_shared<Timeline>(Timeline{{10, 20, 30, 40}, 100}));
+  meter.acknowledge(4, 40);
+  EXPECT_DOUBLE_EQ(meter.at(Instant{10s}).percent, 25);
+  EXPECT_DOUBLE_EQ(*meter.at(Instant{10s}).remaining_s, 30);
+  EXPECT_EQ(meter.at(Instant{9s}).cutting_line, 1U);
+  EXPECT_EQ(meter.at(Instant{10s}).cutting_line, 2U);
+  meter.set_held(Instant{10s}, true);
+  meter.set_held(Instant{20s}, false);
+  EXPECT_DOUBLE_EQ(*meter.at(Instant{20s}).remaining_s, 30) << "a hold is not machining";
+  meter.set_feed_override(Instant{20s}, 50);
+  EXPECT_DOUBLE_EQ(*meter.at(Instant{20s}).remaining_s, 60);
+  EXPECT_DOUBLE_EQ(*meter.at(Instant{40s}).remaining_s, 40);
+  meter.complete();
+  EXPECT_DOUBLE_EQ(meter.at(Instant{90s}).percent, 100);
+}
+
+TEST(ProgressMeter, IsNeverAheadOfTheAcknowledgedLinesNorMoreThanAPlannerBehind) {
+  ProgressMeter meter;
+  meter.start(Instant{}, 4, 40, std::make_shared<Timeline>(Timeline{{10, 20, 30, 40}, 1}));
+  meter.acknowledge(1, 10);
+  EXPECT_DOUBLE_EQ(meter.at(Instant{35s}).percent, 25);
+  meter.acknowledge(4, 40);
+  EXPECT_DOUBLE_EQ(meter.at(Instant{1s}).percent, 75);
 }
 
 }  // namespace

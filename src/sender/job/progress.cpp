@@ -1,6 +1,7 @@
 #include "sender/job/progress.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace kerf::job {
 namespace {
@@ -10,11 +11,23 @@ constexpr double kLeastPercentForPace = 1.0;
 
 }  // namespace
 
-void ProgressMeter::start(Instant now, std::uint32_t lines_total, std::uint64_t bytes_total) {
+void ProgressMeter::start(Instant now, std::uint32_t lines_total, std::uint64_t bytes_total,
+                          std::shared_ptr<const Timeline> timeline) {
   *this = {};
   progress_.lines_total = lines_total;
   progress_.bytes_total = bytes_total;
-  started_at_ = now;
+  timeline_ = std::move(timeline);
+  started_at_ = counted_at_ = now;
+}
+
+double ProgressMeter::machining_s_at(Instant at) const {
+  if (!timeline_) return 0;
+  const double since_s = held_since_ ? 0.0 : base::to_seconds(at - counted_at_);
+  // The tool is neither past what the controller has taken nor further behind it than its planner is long.
+  const std::uint32_t taken = progress_.lines_acknowledged;
+  const std::uint32_t surely_done = taken - std::min(taken, timeline_->lines_ahead_at_most);
+  return std::clamp(machining_s_ + since_s * timeline_->speed * override_factor_, timeline_->end_of(surely_done),
+                    timeline_->end_of(taken));
 }
 
 void ProgressMeter::acknowledge(std::uint32_t file_line, std::uint64_t bytes) {
@@ -25,6 +38,8 @@ void ProgressMeter::acknowledge(std::uint32_t file_line, std::uint64_t bytes) {
 
 void ProgressMeter::set_held(Instant now, bool held) {
   if (held == held_since_.has_value()) return;
+  machining_s_ = machining_s_at(now);
+  counted_at_ = now;
   if (held) {
     held_since_ = now;
     return;
@@ -33,7 +48,16 @@ void ProgressMeter::set_held(Instant now, bool held) {
   held_since_.reset();
 }
 
+void ProgressMeter::set_feed_override(Instant now, int percent) {
+  const double factor = percent / 100.0;
+  if (factor == override_factor_ || percent <= 0) return;
+  machining_s_ = machining_s_at(now);
+  counted_at_ = now;
+  override_factor_ = factor;
+}
+
 void ProgressMeter::complete() {
+  is_complete_ = true;
   progress_.lines_acknowledged = progress_.lines_total;
   progress_.bytes_acknowledged = progress_.bytes_total;
 }
@@ -49,15 +73,35 @@ Progress ProgressMeter::at(Instant now) const {
   const Duration held = held_ + (held_since_ ? until - *held_since_ : Duration{});
   progress.elapsed_s = base::to_seconds(until - started_at_);
   progress.held_s = base::to_seconds(held);
+  estimate(progress, until);
+  return progress;
+}
+
+void ProgressMeter::estimate(Progress& progress, Instant at) const {
+  if (is_complete_) {
+    if (timeline_) progress.cutting_line = progress.lines_total;
+    progress.percent = 100.0;
+    progress.remaining_s = 0.0;
+    return;
+  }
+  if (timeline_ && timeline_->total_s() > 0) {
+    const double done_s = machining_s_at(at);
+    const double total_s = timeline_->total_s();
+    const auto next = std::ranges::upper_bound(timeline_->end_s, done_s);
+    const auto line = static_cast<std::uint32_t>(next - timeline_->end_s.begin()) + 1;
+    progress.cutting_line = std::min(line, progress.lines_total);
+    progress.percent = 100.0 * done_s / total_s;
+    progress.remaining_s = (total_s - done_s) / (timeline_->speed * override_factor_);
+    return;
+  }
   if (progress.bytes_total > 0) {
     progress.percent =
         100.0 * static_cast<double>(progress.bytes_acknowledged) / static_cast<double>(progress.bytes_total);
   }
   if (progress.percent >= kLeastPercentForPace) {
     const double moving_s = progress.elapsed_s - progress.held_s;
-    progress.remaining_at_this_pace_s = moving_s * (100.0 - progress.percent) / progress.percent;
+    progress.remaining_s = moving_s * (100.0 - progress.percent) / progress.percent;
   }
-  return progress;
 }
 
 }  // namespace kerf::job

@@ -1,12 +1,14 @@
 #pragma once
-// How far a job has come, from the lines that the controller has acknowledged.
+// How far a job has come, from the lines that the controller has acknowledged and, where there was one, the rehearsal.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include <boost/describe.hpp>
 
 #include "common/base/time.hpp"
+#include "sender/job/timeline.hpp"
 
 namespace kerf::job {
 
@@ -19,26 +21,33 @@ struct Progress {
   std::uint64_t bytes_acknowledged = 0;
   /// File line acknowledged last; 0 before the first.
   std::uint32_t file_line = 0;
+  /// File line that the tool is cutting, as far as the rehearsal can tell; empty without one.
+  std::optional<std::uint32_t> cutting_line;
+  /// Of the rehearsed time, else of the file's bytes.
   double percent = 0;
   double elapsed_s = 0;
   /// Time held, stopped at M0 or at a door, already in `elapsed_s`.
   double held_s = 0;
-  /// What is left if the rest of the file takes as long a byte as the part before; empty until there is something to go
-  /// by.
-  std::optional<double> remaining_at_this_pace_s;
+  /// What is left of the rehearsed time at the present overrides. Without a rehearsal: what is left if the rest of the
+  /// file takes as long a byte as the part before. Empty until there is something to go by.
+  std::optional<double> remaining_s;
   bool operator==(const Progress&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(Progress, (),
-                      (lines_total, lines_acknowledged, bytes_total, bytes_acknowledged, file_line, percent, elapsed_s,
-                       held_s, remaining_at_this_pace_s))
+                      (lines_total, lines_acknowledged, bytes_total, bytes_acknowledged, file_line, cutting_line,
+                       percent, elapsed_s, held_s, remaining_s))
 
 /// Keeps the account behind a Progress.
 class ProgressMeter {
  public:
-  void start(Instant now, std::uint32_t lines_total, std::uint64_t bytes_total);
+  /// `timeline` may be null.
+  void start(Instant now, std::uint32_t lines_total, std::uint64_t bytes_total,
+             std::shared_ptr<const Timeline> timeline = nullptr);
   /// Everything up to and including `file_line`, which ends at `bytes`, is dealt with.
   void acknowledge(std::uint32_t file_line, std::uint64_t bytes);
   void set_held(Instant now, bool held);
+  /// The feed override, which the rehearsal did not know. Percent, above 0.
+  void set_feed_override(Instant now, int percent);
   /// The whole file is dealt with.
   void complete();
   /// Progress at `now`; time stands still after `stop`.
@@ -46,7 +55,16 @@ class ProgressMeter {
   void stop(Instant now);
 
  private:
+  [[nodiscard]] double machining_s_at(Instant at) const;
+  void estimate(Progress& progress, Instant at) const;
+
   Progress progress_;
+  std::shared_ptr<const Timeline> timeline_;
+  bool is_complete_ = false;
+  double override_factor_ = 1.0;
+  /// Rehearsed seconds that had passed at `counted_at_`.
+  double machining_s_ = 0;
+  Instant counted_at_{};
   Instant started_at_{};
   std::optional<Instant> held_since_;
   std::optional<Instant> stopped_at_;

@@ -10,12 +10,15 @@
 #include <boost/describe.hpp>
 
 #include "sender/job/program.hpp"
+#include "sender/job/timeline.hpp"
 
 namespace kerf::session {
 
-/// Streams a program. Needs a machine that is identified, at rest in Idle or Check, and no job under way.
+/// Streams a program. Needs a machine that is identified, at rest in Idle or Check, and no job under way. With a
+/// timeline its progress is told by the rehearsed time.
 struct StartJob {
   std::shared_ptr<const job::Program> program;
+  std::shared_ptr<const job::Timeline> timeline{};
 };
 
 /// Feed hold: decelerate and stand still, position kept. Works in every state.

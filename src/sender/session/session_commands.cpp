@@ -65,7 +65,7 @@ void Session::obey(Instant now, const StartJob& command) {
   }
   if (dialect.error_latch) streamer_.enqueue(Purpose::ClearLatch, "");
   streamer_.feed_from(std::make_unique<ProgramLines>(command.program, form));
-  job_.emplace(now, *command.program, dialect.error_latch);
+  job_.emplace(now, *command.program, dialect.error_latch, command.timeline);
   job_state_ = job_->state();
   tell(JobStarted{command.program->name()});
 }

@@ -1,0 +1,18 @@
+#pragma once
+// Cuts a program on the virtual controller before the machine does, to know how long each line takes.
+
+#include <memory>
+
+#include "sender/job/program.hpp"
+#include "sender/job/timeline.hpp"
+#include "sender/machine/capabilities.hpp"
+
+namespace kerf::apps {
+
+/// The timeline of `program` on a machine like the one that told these capabilities, with its settings. Null when it
+/// would say nothing reliable: an unknown firmware, a program that does not run through by itself (a refused line, M0,
+/// an alarm), or one so long that the operator would wait for it. `speed` is how fast the machine's clock runs.
+[[nodiscard]] std::shared_ptr<const job::Timeline> rehearse(const job::Program& program,
+                                                            const machine::Capabilities& capabilities, double speed);
+
+}  // namespace kerf::apps
