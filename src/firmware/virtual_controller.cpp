@@ -166,8 +166,8 @@ void VirtualController::keep_motion_log() {
 }
 
 const MotionLog& VirtualController::motion_log() const {
-  static const MotionLog kEmpty;
-  return parts_->board.motion_log ? *parts_->board.motion_log : kEmpty;
+  static const MotionLog empty;
+  return parts_->board.motion_log ? *parts_->board.motion_log : empty;
 }
 
 }  // namespace kerf::firmware

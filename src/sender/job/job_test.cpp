@@ -23,8 +23,11 @@ class JobTest : public testing::Test {
     return snapshot;
   }
   void answer(Job& job, std::uint32_t line, int code = 0) {
-    job.on_answer(
-        now_, {.file_line = line, .file_offset_after = line * 5, .text = "G1", .error_code = code, .meaning = "No."});
+    job.on_answer(now_, {.file_line = line,
+                         .file_offset_after = std::uint64_t{line} * 5,
+                         .text = "G1",
+                         .error_code = code,
+                         .meaning = "No."});
   }
 
   Instant now_{};
