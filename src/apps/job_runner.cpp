@@ -202,7 +202,8 @@ void JobRunner::ask_if_held(const job::JobState& job) {
   if (job.phase != job::JobPhase::Held) return;
   if (is_asking_ || wish_ == Wish::Stop || wish_ == Wish::Abort) return;
   is_asking_ = true;
-  const std::string where = fmt::format("Held at line {}. {}", job.progress.file_line, held_sentence(job.hold_cause));
+  const std::string where =
+      fmt::format("Held at line {}. {}", job.progress.shown_line(), held_sentence(job.hold_cause));
   view_.asked(can_ask_ ? where + " [c]ontinue or [s]top? " : where + " Interrupt (SIGINT) to stop the job.");
 }
 

@@ -18,7 +18,7 @@ std::string percent_text(const job::Progress& progress) {
 }
 
 std::string line_text(const job::Progress& progress) {
-  return fmt::format("line {}/{}", progress.cutting_line.value_or(progress.file_line), progress.lines_total);
+  return fmt::format("line {}/{}", progress.shown_line(), progress.lines_total);
 }
 
 std::string times_text(const job::Progress& progress) {

@@ -31,6 +31,9 @@ struct Progress {
   /// What is left of the rehearsed time at the present overrides. Without a rehearsal: what is left if the rest of the
   /// file takes as long a byte as the part before. Empty until there is something to go by.
   std::optional<double> remaining_s;
+
+  /// The line to show to people: the one being cut if that is known, else the one taken last.
+  [[nodiscard]] std::uint32_t shown_line() const { return cutting_line.value_or(file_line); }
   bool operator==(const Progress&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(Progress, (),
