@@ -98,9 +98,8 @@ std::optional<std::vector<InjectedByte>> parse_injections(const std::vector<std:
           fmt::format("'{}' is no injected byte: write seconds, a colon and a byte in hex, such as 1.5:0x21.", text));
       return std::nullopt;
     }
-    bytes.push_back(*byte);
+    bytes.insert(std::ranges::upper_bound(bytes, byte->after, {}, &InjectedByte::after), *byte);
   }
-  std::ranges::stable_sort(bytes, {}, &InjectedByte::after);
   return bytes;
 }
 
