@@ -146,7 +146,7 @@ def check_place(file: SourceFile) -> Iterator[Finding]:
 def check_file_name(file: SourceFile) -> Iterator[Finding]:
     if not file.path.startswith(("src/", "tests/", "bench/", "tools/", "examples/")):
         return
-    if file.name in ("CMakeLists.txt", "README.md") or file.path.startswith("tests/corpus/"):
+    if file.name in ("CMakeLists.txt", "README.md", "package-lock.json") or file.path.startswith("tests/corpus/"):
         return
     stem = file.name.split(".")[0]
     if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", stem):
