@@ -78,6 +78,7 @@ class BlockSteps {
     if (board_.personality.stored_writes_synchronise) steps_.emplace_back(Synchronize{});
     steps_.emplace_back(Perform{.action = write});
   }
+  void operator()(const gcode::ToolTableWrite& write) { steps_.emplace_back(Perform{.action = write}); }
   void operator()(const gcode::ToolSelect& select) { steps_.emplace_back(Perform{.action = select}); }
   void operator()(const gcode::ToolChange&) { steps_.insert(steps_.end(), {Synchronize{}, EnterToolChange{}}); }
   void operator()(const gcode::ProgramPause&) { steps_.insert(steps_.end(), {Synchronize{}, HoldForCycleStart{}}); }

@@ -264,8 +264,26 @@ void Board::store_offset(StoredOffset which) {
   ++stored_revision;
 }
 
+void Board::store_tool(int tool) {
+  const gcode::Tool& entry = interpreter.offsets().tools.at(static_cast<std::size_t>(tool));
+  const auto axes = static_cast<std::ptrdiff_t>(settings.axes());
+  StoredTool kept{.length_mm = {entry.length_mm.begin(), entry.length_mm.begin() + axes},
+                  .radius_mm = static_cast<double>(entry.radius_mm)};
+  stored.tools.insert_or_assign(tool, std::move(kept));
+  ++stored_revision;
+}
+
 void Board::load_offsets() {
   interpreter.offsets() = gcode::Offsets{};
+  interpreter.offsets().tools.resize(static_cast<std::size_t>(personality.hardware.tools) + 1);
+  for (const auto& [number, kept] : stored.tools) {
+    if (number < 1 || number > personality.hardware.tools) continue;
+    gcode::Tool& entry = interpreter.offsets().tools.at(static_cast<std::size_t>(number));
+    entry.radius_mm = static_cast<float>(kept.radius_mm);
+    const std::size_t count = std::min(entry.length_mm.size(), kept.length_mm.size());
+    for (std::size_t axis = 0; axis < count; ++axis)
+      entry.length_mm.at(axis) = static_cast<float>(kept.length_mm.at(axis));
+  }
   for (std::size_t index = 0; index < kOffsetNames.size(); ++index) {
     const auto found = stored.offsets.find(kOffsetNames.at(index));
     if (found == stored.offsets.end()) continue;

@@ -180,6 +180,8 @@ struct Board {
   /// Writes settings and offsets into `stored`.
   void store_settings();
   void store_offset(gcode::StoredOffset which);
+  void store_tool(int tool);
+  /// Offsets and tool table as stored.
   void load_offsets();
 
  private:

@@ -173,7 +173,7 @@ void Cycle::stop() {
 
 void Cycle::finish_stop() {
   board_.interpreter.abort_tool_change();
-  board_.interpreter.reset();
+  board_.interpreter.stop();
   board_.flush_motion();
   board_.set_accessories({});
   board_.overrides.feed_acts = board_.overrides.spindle_acts = board_.overrides.feed_hold_acts = true;

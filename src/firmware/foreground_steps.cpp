@@ -145,6 +145,7 @@ bool Foreground::operator()(Perform& step) {
                  },
                  [&](const gcode::WorkOffsetChange&) { note_work_offset(); },
                  [&](const gcode::StoredOffsetWrite& write) { board_.store_offset(write.which); },
+                 [&](const gcode::ToolTableWrite& write) { board_.store_tool(write.tool); },
                  [&](const gcode::ToolSelect&) { board_.report.tool = true; },
                  [&](const gcode::OverrideControl& control) {
                    board_.overrides.feed_acts = control.feed_enabled;

@@ -51,10 +51,6 @@ bool is_list(SettingType type) {
   return type == SettingType::Bitfield || type == SettingType::ExclusiveBitfield || type == SettingType::Radio;
 }
 
-bool is_compiled_in(const vocabulary::CodeRow& row) {
-  return row.build == vocabulary::BuildOption::Usual;
-}
-
 }  // namespace
 
 std::string key_of(const SettingsStore::Slot& slot) {
@@ -138,15 +134,16 @@ void Listing::commands() {
 void Listing::describe_setting(const SettingsStore::Slot& slot) {
   const SettingRow& row = *slot.match.row;
   std::string text = "$" + key_of(slot) + ": " + vocabulary::full_name(slot.match);
-  if (!row.unit.empty()) text += " in " + std::string{row.unit};
+  const std::string unit = unit_of(slot);
+  if (!unit.empty()) text += " in " + unit;
   text += type_words(row) + range_words(row);
   if (row.reboot) text += ", reboot required";
   line("");
   line(std::move(text));
   if (!is_list(row.type)) return;
-  const int items = static_cast<int>(std::ranges::count(row.format, ',')) + 1;
+  const int items = static_cast<int>(std::ranges::count(slot.format, ',')) + 1;
   for (int index = 0; index < items; ++index) {
-    const std::string_view item = vocabulary::item_of(row, index);
+    const std::string_view item = vocabulary::item_of(slot.format, index);
     if (item == "N/A") continue;
     std::string entry = "    " + std::to_string(index) + " - " + std::string{item};
     if (row.type != SettingType::Radio) entry += " (" + std::to_string(1U << static_cast<unsigned>(index)) + ")";
@@ -158,7 +155,7 @@ void Listing::setting_description(std::string_view key) {
   const auto* slot = board_.settings.find(key);
   if (slot == nullptr) return;
   board_.say(protocol::SettingDescription{.id = slot->match.row->id + slot->match.axis,
-                                          .text = std::string{slot->match.row->description}});
+                                          .text = description_of(*slot->match.row)});
 }
 
 void Listing::startup_lines() {
@@ -213,7 +210,7 @@ void Listing::build_information(bool extended) {
   if (extended) {
     options.planner_blocks = board_.planner.free_blocks() + board_.planner.block_count();
     options.axes = board_.settings.axes();
-    options.tools = 0;
+    options.tools = board_.personality.hardware.tools;
   }
   board_.say(options);
   if (!extended) return;
@@ -223,71 +220,6 @@ void Listing::build_information(bool extended) {
   board_.say(protocol::FirmwareName{.name = std::string{dialect.firmware_field}});
   for (const auto& [key, value] : board_.personality.build_rows) {
     board_.say(protocol::BuildRow{.key = std::string{key}, .value = std::string{value}});
-  }
-}
-
-void Listing::alarms() {
-  if (titles()) board_.say(protocol::AlarmCodeRow{.id = 0, .title = "None", .text = "No alarm is active."});
-  for (const auto& row : board_.personality.dialect().alarms) {
-    if (row.code != 0 && is_compiled_in(row)) one_alarm(row.code);
-  }
-}
-
-bool Listing::one_alarm(int code) {
-  const auto* row = vocabulary::find_code(board_.personality.dialect().alarms, code);
-  if (row == nullptr) return false;
-  board_.say(protocol::AlarmCodeRow{
-      .id = code, .title = titles() ? std::string{row->title} : std::string{}, .text = std::string{row->text}});
-  return true;
-}
-
-void Listing::errors() {
-  board_.say(titles() ? protocol::ErrorCodeRow{.id = 0, .title = "None", .text = "No error occurred."}
-                      : protocol::ErrorCodeRow{});
-  for (const auto& row : board_.personality.dialect().errors) {
-    if (row.code != 0 && is_compiled_in(row)) one_error(row.code);
-  }
-}
-
-bool Listing::one_error(int code) {
-  const auto* row = vocabulary::find_code(board_.personality.dialect().errors, code);
-  if (row == nullptr) return false;
-  board_.say(protocol::ErrorCodeRow{
-      .id = code, .title = titles() ? std::string{row->title} : std::string{}, .text = std::string{row->text}});
-  return true;
-}
-
-std::set<int> Listing::groups_in_use() const {
-  std::set<int> in_use = {0};
-  for (const auto& slot : board_.settings.slots()) in_use.insert(vocabulary::group_of(slot.match));
-  for (const auto& group : vocabulary::setting_group_rows()) {
-    if (in_use.contains(group.id)) in_use.insert(group.parent);
-  }
-  return in_use;
-}
-
-void Listing::setting_groups() {
-  const std::set<int> in_use = groups_in_use();
-  for (const auto& group : vocabulary::setting_group_rows()) {
-    if (!in_use.contains(group.id)) continue;
-    board_.say(protocol::SettingGroupRow{.id = group.id, .parent = group.parent, .name = std::string{group.name}});
-  }
-}
-
-void Listing::setting_definitions() {
-  for (const auto& slot : board_.settings.slots()) {
-    const SettingRow& row = *slot.match.row;
-    if (row.id < 0) continue;
-    board_.say(protocol::SettingDefinition{.id = row.id + slot.match.axis,
-                                           .group = vocabulary::group_of(slot.match),
-                                           .name = vocabulary::full_name(slot.match),
-                                           .unit = std::string{row.unit},
-                                           .type = static_cast<int>(row.type),
-                                           .format = std::string{row.format},
-                                           .min = std::string{row.min.text()},
-                                           .max = std::string{row.max.text()},
-                                           .reboot = row.reboot,
-                                           .allow_null = row.allow_null});
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -32,6 +33,11 @@ class Listing {
   void errors();
   void setting_groups();
   void setting_definitions();
+  /// The forms for spreadsheets: `$EAG`, `$EEG`, `$ESG`, `$ESH`.
+  void alarms_as_csv();
+  void errors_as_csv();
+  void settings_as_csv();
+  void settings_as_tabs();
   void limits();
   void home_switches();
   void last_events();
@@ -43,14 +49,20 @@ class Listing {
  private:
   void help_topics();
   void line(std::string text);
+  void codes_as_csv(std::span<const vocabulary::CodeRow> rows);
   [[nodiscard]] std::set<int> groups_in_use() const;
   [[nodiscard]] std::string option_letters() const;
   [[nodiscard]] std::vector<std::string> new_options() const;
+  [[nodiscard]] std::string unit_of(const SettingsStore::Slot& slot) const {
+    return vocabulary::unit_of(slot.match, board_.settings.rotary_axes());
+  }
   [[nodiscard]] bool titles() const { return board_.personality.codes_have_titles; }
 
   Board& board_;
 };
 
+/// The description with what the firmware adds to it.
+[[nodiscard]] std::string description_of(const vocabulary::SettingRow& row);
 /// A setting's number, or its name where it has no number.
 [[nodiscard]] std::string key_of(const SettingsStore::Slot& slot);
 

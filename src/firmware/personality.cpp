@@ -22,6 +22,13 @@ const Personality& personality_of(vocabulary::Firmware firmware) {
   return found == kAll.end() ? kGrbl : **found;
 }
 
+Personality built_with(const Personality& personality, const Hardware& hardware) {
+  Personality built = personality;
+  if (hardware.axes != 0) built.hardware.axes = std::min(hardware.axes, personality.dialect().axes_max);
+  if (hardware.tools != 0) built.hardware.tools = hardware.tools;
+  return built;
+}
+
 const Personality* personality_named(std::string_view name) {
   const auto found = std::ranges::find(kAll, name, [](const Personality* one) { return one->dialect().key; });
   return found == kAll.end() ? nullptr : *found;

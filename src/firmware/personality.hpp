@@ -66,6 +66,10 @@ enum class Command : std::uint8_t {
   ListErrors,
   ListSettingGroups,
   ListSettingDefinitions,
+  ListAlarmsAsCsv,
+  ListErrorsAsCsv,
+  ListSettingsAsCsv,
+  ListSettingsAsTabs,
   ListEverything,
   SettingDescription,
   BlockDelete,
@@ -194,9 +198,16 @@ struct LoopTimes {
   int to_start = 0;
 };
 
+/// What a build has beyond, or instead of, what its reference build has.
+struct Hardware {
+  int axes = 0;   ///< 0: those of the dialect
+  int tools = 0;  ///< entries of grblHAL's tool table
+};
+
 /// One firmware's ways. The function pointers are named policies; everything else is a value.
 struct Personality {
   vocabulary::Firmware firmware{};
+  Hardware hardware{};
 
   StartRules start{};
   HomingRules homing{};
@@ -241,6 +252,9 @@ struct Personality {
 
 /// The personality of a firmware; Grbl 1.1h for an unknown one.
 [[nodiscard]] const Personality& personality_of(vocabulary::Firmware firmware);
+
+/// The same firmware on other hardware; zeros leave a count as it is.
+[[nodiscard]] Personality built_with(const Personality& personality, const Hardware& hardware);
 
 /// The personality that people call `name` on a command line ("grbl", "rabbit", "grblhal"); null if there is none.
 [[nodiscard]] const Personality* personality_named(std::string_view name);

@@ -320,12 +320,26 @@ void Reporter::say_parameters() {
   const auto say_offset = [&](std::string_view name, const AxisValues& values) {
     board_.say(protocol::StoredOffset{.name = std::string{name}, .values = in_report_units(values)});
   };
+  const gcode::ParserState& state = board_.interpreter.state();
+  if (state.modal.scaling) {
+    const auto axes = static_cast<std::ptrdiff_t>(board_.settings.axes());
+    board_.say(protocol::ScaledAxes{.factors = {state.scale_factor.begin(), state.scale_factor.begin() + axes}});
+  }
   for (std::size_t index = 0; index < static_cast<std::size_t>(board_.interpreter.rules().work_offsets); ++index) {
     say_offset(kWorkOffsets.at(index), offsets.work.at(index));
   }
   say_offset("G28", offsets.g28);
   say_offset("G30", offsets.g30);
   say_offset("G92", offsets.g92);
+  const double scale = board_.settings.flag(setting::kReportInches) ? 1.0 / kMmPerInch : 1.0;
+  for (int tool = 1; tool <= board_.personality.hardware.tools; ++tool) {
+    const gcode::Tool& entry = offsets.tools.at(static_cast<std::size_t>(tool));
+    board_.say(protocol::ToolRow{.tool = tool,
+                                 .offsets = in_report_units(entry.length_mm),
+                                 .radius = static_cast<double>(entry.radius_mm) * scale,
+                                 .geometry = "6,0,0",
+                                 .pocket = std::to_string(tool)});
+  }
   if (board_.personality.homing.tracks_axes && board_.settings.flag(setting::kHoming)) {
     board_.say(protocol::HomePosition{.values = in_report_units(board_.home_position_mm),
                                       .axis_mask = static_cast<int>(board_.homed)});
@@ -333,7 +347,8 @@ void Reporter::say_parameters() {
   say_tool_length_offset();
   say_probe();
   if (board_.tool_reference_axes != 0) {
-    board_.say(protocol::ToolLengthReference{.values = in_report_units(board_.tool_reference_mm)});
+    const auto linear = gcode::axes_of(board_.interpreter.state().modal.plane).linear;
+    board_.say(protocol::ToolLengthReference{.values = {in_report_units(board_.tool_reference_mm).at(linear)}});
   }
 }
 

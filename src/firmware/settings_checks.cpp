@@ -44,12 +44,12 @@ bool above_maximum(const SettingRow& row, double value) {
 }
 
 /// One more than the largest value of a list or mask; 0 where only min and max count.
-std::uint64_t count_of_values(const SettingRow& row, int axes) {
+std::uint64_t count_of_values(const SettingRow& row, std::string_view format, int axes) {
   switch (row.type) {
     case SettingType::Bool: return 2;
     case SettingType::Bitfield:
-    case SettingType::ExclusiveBitfield: return std::uint64_t{1} << static_cast<unsigned>(items_in(row.format));
-    case SettingType::Radio: return static_cast<std::uint64_t>(items_in(row.format));
+    case SettingType::ExclusiveBitfield: return std::uint64_t{1} << static_cast<unsigned>(items_in(format));
+    case SettingType::Radio: return static_cast<std::uint64_t>(items_in(format));
     case SettingType::Axes: return std::uint64_t{1} << static_cast<unsigned>(axes);
     default: return 0;
   }
@@ -70,10 +70,11 @@ Checked check_decimal_grblhal(const SettingRow& row, std::string_view text) {
   return print_decimal(row, value);
 }
 
-Checked check_integer_grblhal(const SettingRow& row, std::string_view text, int axes) {
+Checked check_integer_grblhal(const SettingsStore& store, const SettingMatch& match, std::string_view text) {
+  const SettingRow& row = *match.row;
   const auto value = base::parse_int<std::uint32_t>(text);
   if (!value) return std::unexpected(ErrorCode::BadNumberFormat);
-  const std::uint64_t values = count_of_values(row, axes);
+  const std::uint64_t values = count_of_values(row, store.format_of(match), store.axes());
   const auto as_number = static_cast<double>(*value);
   if ((values != 0 && *value >= values) || below_minimum(row, as_number) || above_maximum(row, as_number)) {
     return std::unexpected(ErrorCode::SettingOutOfRange);
@@ -97,7 +98,7 @@ Checked check_setting_grblhal(const SettingsStore& store, const SettingMatch& ma
     case SettingType::Password:
     case SettingType::Ipv4: return check_length(row, text, ErrorCode::SettingOutOfRange);
     case SettingType::Decimal: checked = check_decimal_grblhal(row, text); break;
-    default: checked = check_integer_grblhal(row, text, store.axes()); break;
+    default: checked = check_integer_grblhal(store, match, text); break;
   }
   if (checked && needs_homing(row) && *checked != "0" && !store.flag(setting::kHoming)) {
     return std::unexpected(ErrorCode::SoftLimitNeedsHoming);

@@ -14,8 +14,15 @@ bool is_text(SettingType type) {
   return type == SettingType::Text || type == SettingType::Password || type == SettingType::Ipv4;
 }
 
-/// A mask over all axes is written down for three of them (vocabulary::SettingRow).
+constexpr unsigned kFirstRotary = 3;
+constexpr unsigned kParkingOverrideBit = 2;
+
+/// A mask over all axes is written down for three of them (vocabulary::SettingRow), one over rotary axes for all.
 std::string default_text(const SettingRow& row, int axes) {
+  if (row.id == setting::kRotaryAxes) {
+    const auto mask = static_cast<unsigned>(base::parse_int(row.default_value).value_or(0));
+    return std::to_string(mask & ((1U << (static_cast<unsigned>(axes) - kFirstRotary)) - 1U));
+  }
   if (row.type == SettingType::Axes && row.default_value == "7") return std::to_string((1 << axes) - 1);
   return std::string{row.default_value};
 }
@@ -23,7 +30,7 @@ std::string default_text(const SettingRow& row, int axes) {
 }  // namespace
 
 int axes_of(const Personality& personality, const StoredState& stored) {
-  int axes = personality.dialect().axes_default;
+  int axes = personality.hardware.axes != 0 ? personality.hardware.axes : personality.dialect().axes_default;
   for (int axis = axes; axis < personality.dialect().axes_max; ++axis) {
     if (stored.settings.contains(std::to_string(setting::kStepsPerMm + axis))) axes = axis + 1;
   }
@@ -34,9 +41,11 @@ SettingsStore::SettingsStore(const Personality& personality, int axes)
     : personality_(personality), rows_(personality.dialect().settings), axes_(axes) {
   for (const SettingRow& row : rows_) {
     first_slot_.push_back(slots_.size());
-    if (row.build != vocabulary::BuildOption::Usual) continue;
+    if (!vocabulary::is_usual(row, axes_)) continue;
     const int count = row.per_axis ? axes_ : 1;
-    for (int axis = 0; axis < count; ++axis) slots_.push_back({.match = {.row = &row, .axis = axis}, .text = {}});
+    for (int axis = 0; axis < count; ++axis) {
+      slots_.push_back({.match = {.row = &row, .axis = axis}, .format = vocabulary::format_of(row, axes_)});
+    }
   }
   restore_defaults();
 }
@@ -95,7 +104,7 @@ void SettingsStore::apply_consequences() {
 }
 
 const SettingsStore::Slot* SettingsStore::slot_of(const SettingMatch& match) const {
-  if (match.row->build != vocabulary::BuildOption::Usual) return nullptr;
+  if (!vocabulary::is_usual(*match.row, axes_)) return nullptr;
   return &slots_.at(first_slot_.at(static_cast<std::size_t>(match.row - rows_.data())) +
                     static_cast<std::size_t>(match.axis));
 }
@@ -103,6 +112,17 @@ const SettingsStore::Slot* SettingsStore::slot_of(const SettingMatch& match) con
 const SettingsStore::Slot* SettingsStore::find(std::string_view key) const {
   const auto match = vocabulary::find_setting(rows_, key, axes_);
   return match ? slot_of(*match) : nullptr;
+}
+
+std::string_view SettingsStore::format_of(const SettingMatch& match) const {
+  const Slot* slot = slot_of(match);
+  return slot != nullptr ? std::string_view{slot->format} : match.row->format;
+}
+
+vocabulary::AxisMask SettingsStore::rotary_axes() const {
+  return personality_.has_extended_settings
+             ? static_cast<vocabulary::AxisMask>(mask(setting::kRotaryAxes) << kFirstRotary)
+             : vocabulary::AxisMask{0};
 }
 
 double SettingsStore::number(int id, int axis) const {
@@ -149,6 +169,9 @@ void SettingsStore::configure(gcode::InterpreterSettings& settings) const {
   settings.g92_volatile = flag(setting::kG92Volatile);
   settings.restore_overrides_at_end = flag(setting::kRestoreOverrides);
   settings.locked_work_offsets = mask(setting::kLockedOffsets);
+  settings.rotary_axes = rotary_axes();
+  settings.parking_override_control = flag(setting::kParking) && flag(setting::kParking, kParkingOverrideBit);
+  settings.tools = personality_.hardware.tools;
   settings.g73_retract_mm = static_cast<float>(number(setting::kG73Retract));
 }
 

@@ -21,8 +21,9 @@ class SettingsStore {
  public:
   struct Slot {
     vocabulary::SettingMatch match;
-    std::string text{};  ///< as `$$` prints it
-    double number = 0;   ///< of `text`; 0 for texts
+    std::string text{};    ///< as `$$` prints it
+    std::string format{};  ///< as `$ES` prints it
+    double number = 0;     ///< of `text`; 0 for texts
   };
 
   explicit SettingsStore(const Personality& personality)
@@ -51,6 +52,9 @@ class SettingsStore {
   [[nodiscard]] vocabulary::AxisValues axis_values(int id) const;
 
   [[nodiscard]] int axes() const { return axes_; }
+  /// Axes that turn (grblHAL `$376`).
+  [[nodiscard]] vocabulary::AxisMask rotary_axes() const;
+  [[nodiscard]] std::string_view format_of(const vocabulary::SettingMatch& match) const;
   [[nodiscard]] const Personality& personality() const { return personality_; }
   [[nodiscard]] motion::MotionSettings motion() const;
   /// Updates the settings that the interpreter depends on; the rest of `settings` stays.
@@ -69,7 +73,7 @@ class SettingsStore {
   std::vector<std::size_t> first_slot_;  ///< by row
 };
 
-/// A machine has the axes of the usual build, and those whose steps per mm (`$103` on) were stored.
+/// A machine has the axes it was built with, and those whose steps per mm (`$103` on) were stored.
 [[nodiscard]] int axes_of(const Personality& personality, const StoredState& stored);
 
 /// Settings whose number means the same thing everywhere (protocol.md 7.2).
@@ -98,6 +102,12 @@ inline constexpr int kMaxTravel = 130;
 inline constexpr int kG73Retract = 28;
 inline constexpr int kLegacyRealtime = 39;
 inline constexpr int kLimitJogs = 40;
+inline constexpr int kParking = 41;
+inline constexpr int kParkingAxis = 42;
+inline constexpr int kParkingPullOut = 56;
+inline constexpr int kParkingPullOutRate = 57;
+inline constexpr int kParkingTarget = 58;
+inline constexpr int kParkingRate = 59;
 inline constexpr int kRestoreOverrides = 60;
 inline constexpr int kDoorOptions = 61;
 inline constexpr int kSleepEnable = 62;
@@ -105,12 +115,22 @@ inline constexpr int kHoldActions = 63;
 inline constexpr int kForceInitAlarm = 64;
 inline constexpr int kProbeOptions = 65;
 inline constexpr int kToolChangeMode = 341;
+inline constexpr int kToolProbeDistance = 342;
+inline constexpr int kToolProbeFeed = 343;
+inline constexpr int kToolProbeSeek = 344;
+inline constexpr int kToolProbePullOff = 345;
+inline constexpr int kToolChangeOptions = 346;
+inline constexpr int kRotaryAxes = 376;
 inline constexpr int kG92Volatile = 384;
 inline constexpr int kDoorSpindleDelay = 392;
 inline constexpr int kDoorCoolantDelay = 393;
+inline constexpr int kSpindleOnDelay = 394;
 inline constexpr int kPlannerBlocks = 398;
 inline constexpr int kAutoReport = 481;
 inline constexpr int kLockedOffsets = 486;
+inline constexpr int kKeepTool = 485;
+inline constexpr int kSpindleOffDelay = 539;
+inline constexpr int kCoolantOnDelay = 673;
 inline constexpr int kResetActions = 676;
 }  // namespace setting
 

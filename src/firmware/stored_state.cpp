@@ -40,6 +40,37 @@ Result read_dollar_line(StoredState& state, std::string_view line) {
   return {};
 }
 
+std::expected<std::vector<double>, StoredStateError::Reason> read_numbers(std::string_view text) {
+  std::vector<double> values;
+  for (const std::string_view word : base::split(text, ',')) {
+    const auto value = base::parse_decimal(word);
+    if (!value) return std::unexpected(StoredStateError::Reason::BadNumber);
+    values.push_back(*value);
+  }
+  return values;
+}
+
+void append_numbers(std::string& text, const std::vector<double>& values) {
+  std::string_view separator;
+  for (const double value : values) {
+    text += separator;
+    base::append_fixed(text, value, kOffsetDecimals);
+    separator = ",";
+  }
+}
+
+// [T:3|0.000000,0.000000,12.500000|0.500000]
+Result read_tool(StoredState& state, std::string_view fields) {
+  const auto parts = base::split(fields, '|');
+  if (parts.size() != 3) return std::unexpected(StoredStateError::Reason::UnknownLine);
+  const auto number = base::parse_int<int>(parts[0]);
+  const auto radius = base::parse_decimal(parts[2]);
+  auto length = read_numbers(parts[1]);
+  if (!number || !radius || !length) return std::unexpected(StoredStateError::Reason::BadNumber);
+  state.tools.insert_or_assign(*number, StoredTool{.length_mm = *std::move(length), .radius_mm = *radius});
+  return {};
+}
+
 // [G54:1.000000,2.000000,3.000000]
 Result read_offset_line(StoredState& state, std::string_view line) {
   const auto colon = line.find(':');
@@ -47,15 +78,13 @@ Result read_offset_line(StoredState& state, std::string_view line) {
     return std::unexpected(StoredStateError::Reason::UnknownLine);
   }
   const std::string_view name = line.substr(1, colon - 1);
+  const std::string_view fields = line.substr(colon + 1, line.size() - colon - 2);
+  if (name == "T") return read_tool(state, fields);
   if (std::ranges::find(kOffsetNames, name) == kOffsetNames.end())
     return std::unexpected(StoredStateError::Reason::UnknownLine);
-  std::vector<double> values;
-  for (const std::string_view word : base::split(line.substr(colon + 1, line.size() - colon - 2), ',')) {
-    const auto value = base::parse_decimal(word);
-    if (!value) return std::unexpected(StoredStateError::Reason::BadNumber);
-    values.push_back(*value);
-  }
-  state.offsets.insert_or_assign(std::string{name}, std::move(values));
+  auto values = read_numbers(fields);
+  if (!values) return std::unexpected(values.error());
+  state.offsets.insert_or_assign(std::string{name}, *std::move(values));
   return {};
 }
 
@@ -105,12 +134,15 @@ std::string print(const StoredState& state) {
   if (!state.user_text.empty()) text.append("$I=").append(state.user_text).append("\n");
   for (const auto& [name, values] : state.offsets) {
     text.append("[").append(name);
-    char separator = ':';
-    for (const double value : values) {
-      text += separator;
-      base::append_fixed(text, value, kOffsetDecimals);
-      separator = ',';
-    }
+    text += ':';
+    append_numbers(text, values);
+    text += "]\n";
+  }
+  for (const auto& [number, tool] : state.tools) {
+    text.append("[T:").append(std::to_string(number)).append("|");
+    append_numbers(text, tool.length_mm);
+    text += '|';
+    append_numbers(text, {tool.radius_mm});
     text += "]\n";
   }
   return text;

@@ -2,12 +2,13 @@
 // What a controller remembers while it is switched off, as a value with a text form.
 //
 // The text form speaks the protocol's own words, one item a line:
-//   state      = header { setting | startup | user-text | offset | "" | "#" any }
+//   state      = header { setting | startup | user-text | offset | tool | "" | "#" any }
 //   header     = "# kerf state 1"
 //   setting    = "$" id "=" value          id is a number, or a name with "/" (Rabbit GRBL)
 //   startup    = "$N0=" line | "$N1=" line
 //   user-text  = "$I=" text
 //   offset     = "[" ( "G54".."G59" | "G59.1".."G59.3" | "G28" | "G30" | "G92" ) ":" number { "," number } "]"
+//   tool       = "[T:" number "|" number { "," number } "|" number "]"
 // Recovery: a file that does not parse is refused as a whole with its line, never half used; the caller decides whether
 // to start blank. JSON was rejected because these lines can be pasted from and to a terminal.
 
@@ -21,6 +22,13 @@
 
 namespace kerf::firmware {
 
+/// An entry of the tool table.
+struct StoredTool {
+  std::vector<double> length_mm;  ///< one an axis
+  double radius_mm = 0;
+  friend bool operator==(const StoredTool&, const StoredTool&) = default;
+};
+
 /// Everything in the non-volatile memory. Only settings that differ from the default need to be present.
 struct StoredState {
   /// False for a memory that was never written: a first boot (protocol.md 1.1: grblHAL then says `error:7` before its
@@ -30,6 +38,8 @@ struct StoredState {
   std::map<std::string, std::string, std::less<>> settings{};
   /// "G54" to values in mm, one an axis, in machine coordinates.
   std::map<std::string, std::vector<double>, std::less<>> offsets;
+  /// Tools that G10 L1 wrote, by number.
+  std::map<int, StoredTool> tools{};
   std::array<std::string, 2> startup_lines;
   /// What `$I=` stored.
   std::string user_text;

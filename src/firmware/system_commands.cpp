@@ -93,6 +93,10 @@ SystemCommands::Result SystemCommands::dispatch_listing(const ParsedCommand& com
     case Command::ListStartupLines: listing_.startup_lines(); break;
     case Command::ListSettingGroups: listing_.setting_groups(); break;
     case Command::ListSettingDefinitions: listing_.setting_definitions(); break;
+    case Command::ListAlarmsAsCsv: listing_.alarms_as_csv(); break;
+    case Command::ListErrorsAsCsv: listing_.errors_as_csv(); break;
+    case Command::ListSettingsAsCsv: listing_.settings_as_csv(); break;
+    case Command::ListSettingsAsTabs: listing_.settings_as_tabs(); break;
     case Command::ListEverything:
       listing_.alarms();
       listing_.errors();
@@ -210,6 +214,9 @@ SystemCommands::Result SystemCommands::home(const ParsedCommand& command, Steps&
   const auto& settings = board_.settings;
   AxisMask asked = 0;
   if (!command.key.empty()) {
+    const auto named = vocabulary::axis_of(command.key.front());
+    const bool lacks_axis = !named || static_cast<int>(vocabulary::index_of(*named)) >= settings.axes();
+    if (board_.personality.has_extended_settings && lacks_axis) return std::unexpected(ErrorCode::InvalidStatement);
     if (board_.personality.has_extended_settings && !settings.flag(setting::kHoming, homing_bit::kSingleAxis)) {
       return std::unexpected(ErrorCode::HomingDisabled);
     }
@@ -299,6 +306,7 @@ SystemCommands::Result SystemCommands::restore(const ParsedCommand& command, Ste
   if (settings) board_.settings.restore_defaults();
   if (offsets) {
     board_.stored.offsets.clear();
+    board_.stored.tools.clear();
     board_.load_offsets();
   }
   if (everything) {

@@ -134,6 +134,10 @@ std::expected<void, TalkFault> read_header(Talk& talk, std::string_view text) {
     const auto firmware = row_of(kPersonalities, value);
     if (!firmware) return std::unexpected(TalkFault::UnknownPersonality);
     talk.personality = *firmware;
+  } else if (parts[0] == "axes" || parts[0] == "tools") {
+    const auto count = base::parse_int<int>(value);
+    if (!count || *count < 0) return std::unexpected(TalkFault::BadCount);
+    (parts[0] == "axes" ? talk.hardware.axes : talk.hardware.tools) = *count;
   } else if (parts[0] == "setting") {
     talk.settings.emplace_back(value);
   } else if (parts[0] == "power-up") {
@@ -202,7 +206,9 @@ std::string_view explain(TalkFault fault) {
   switch (fault) {
     case TalkFault::UnknownMark:
       return "a line begins with '->', '=>', '<-', '<~', '<!', '@', '%' or '#', then one space";
-    case TalkFault::UnknownHeader: return "this header is none of personality, setting, power-up and virtual-only";
+    case TalkFault::BadCount: return "this header wants a whole number";
+    case TalkFault::UnknownHeader:
+      return "this header is none of personality, axes, tools, setting, power-up and virtual-only";
     case TalkFault::HeaderAfterStep: return "headers stand before the first step";
     case TalkFault::UnknownPersonality:
       return "nobody knows who speaks: add '% personality grbl', 'rabbit' or 'grblhal'";

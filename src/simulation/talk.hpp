@@ -11,6 +11,7 @@
 
 #include "common/base/time.hpp"
 #include "common/vocabulary/firmware.hpp"
+#include "firmware/personality.hpp"
 #include "firmware/workcell.hpp"
 
 namespace kerf::simulation {
@@ -57,6 +58,8 @@ struct TalkStep {
 
 struct Talk {
   vocabulary::Firmware personality = vocabulary::Firmware::Unknown;
+  /// What the controller was built with.
+  firmware::Hardware hardware{};
   /// Lines such as `$22=1`, sent before the talk begins.
   std::vector<std::string> settings;
   /// The start-up text is part of the talk.
@@ -69,7 +72,16 @@ struct Talk {
   [[nodiscard]] bool moves_switches() const;
 };
 
-enum class TalkFault { UnknownMark, UnknownHeader, HeaderAfterStep, UnknownPersonality, BadEscape, BadTime, BadSwitch };
+enum class TalkFault {
+  UnknownMark,
+  UnknownHeader,
+  BadCount,
+  HeaderAfterStep,
+  UnknownPersonality,
+  BadEscape,
+  BadTime,
+  BadSwitch
+};
 
 struct TalkSyntaxError {
   TalkFault fault{};

@@ -27,7 +27,8 @@ bool deliver(Instant now, TalkConversation& conversation, firmware::VirtualContr
 TalkOutcome run_talk(const Talk& talk) {
   const Instant began{};
   Instant now = began;
-  firmware::VirtualController controller(firmware::personality_of(talk.personality));
+  const firmware::Personality built = firmware::built_with(firmware::personality_of(talk.personality), talk.hardware);
+  firmware::VirtualController controller(built);
   TalkConversation conversation(talk, now);
   // A talk begins with all switches off and places the homing switches that it needs.
   for (std::size_t axis = 0; axis < vocabulary::kMaxAxes; ++axis) {

@@ -74,12 +74,6 @@ void write_g92(const AxisValues& value, BlockContext& context, bool stores) {
   }
 }
 
-void set_tool_length(const AxisValues& value, BlockContext& context) {
-  if (context.offsets.tool_length == value) return;
-  context.offsets.tool_length = value;
-  note_offset_change(context);
-}
-
 void end_program(BlockContext& context) {
   ParserState& state = context.state;
   ModalState& modal = state.modal;
@@ -185,6 +179,13 @@ ErrorCode act_tool_change(Block& block, BlockContext& context) {
   }
   if (state.tool_pending == state.tool) return ErrorCode::Ok;
   state.arriving_tool = state.tool_pending;
+  if (block.groups.has(Group::G8) && block.modal.tool_length == ToolLengthMode::FromTable) {
+    // The length comes with the tool, when the change is done.
+    block.groups.remove(Group::G8);
+    block.modal.tool_length = state.modal.tool_length;
+    state.arriving_length = block.h > 0.0F ? static_cast<std::uint32_t>(block.h) : state.tool_pending;
+    static_cast<void>(context.tools());
+  }
   state.tool_change_pending = true;
   context.out.push_back(ToolChange{.tool = static_cast<int>(state.tool_pending)});
   return ErrorCode::Ok;
@@ -293,20 +294,6 @@ ErrorCode act_tool_length(Block& block, BlockContext& context) {
   return ErrorCode::Ok;
 }
 
-// Every axis may have a tool length; G43.1 changes those that it names.
-ErrorCode act_tool_length_grblhal(Block& block, BlockContext& context) {
-  if (!block.groups.has(Group::G8)) return ErrorCode::Ok;
-  context.state.modal.tool_length = block.modal.tool_length;
-  AxisValues length{};
-  if (block.modal.tool_length == ToolLengthMode::Dynamic) {
-    length = context.offsets.tool_length;
-    for (std::size_t axis = 0; axis < context.axes(); ++axis)
-      if (block.has_axis(axis)) length[axis] = block.xyz[axis];
-  }
-  set_tool_length(length, context);
-  return ErrorCode::Ok;
-}
-
 ErrorCode act_work_offset(Block& block, BlockContext& context) {
   ParserState& state = context.state;
   if (state.modal.work_offset == block.modal.work_offset) return ErrorCode::Ok;
@@ -321,7 +308,13 @@ ErrorCode act_non_modal(Block& block, BlockContext& context) {
     case NonModal::None:
     case NonModal::Dwell:
     case NonModal::AbsoluteOverride: break;
-    case NonModal::SetData: write_work_offset(block, context); break;
+    case NonModal::SetData:
+      if (block.tool_entry) {
+        write_tool_entry(block, context);
+      } else {
+        write_work_offset(block, context);
+      }
+      break;
     case NonModal::GoHome28:
     case NonModal::GoHome30: move_home(block, context); break;
     case NonModal::SetHome28:

@@ -130,6 +130,12 @@ struct StoredOffsetWrite {
   bool operator==(const StoredOffsetWrite&) const = default;
 };
 
+/// G10 L1: an entry of grblHAL's tool table is written to non-volatile storage. Offsets already has the values.
+struct ToolTableWrite {
+  int tool = 0;
+  bool operator==(const ToolTableWrite&) const = default;
+};
+
 /// T: the tool that the next M6 takes.
 struct ToolSelect {
   int tool = 0;
@@ -177,7 +183,7 @@ struct ProgramDemarcation {
 };
 
 using Action = std::variant<LinearMove, ArcMove, ProbeMove, Dwell, SpindleChange, SpindleSpeedChange, CoolantChange,
-                            WorkOffsetChange, StoredOffsetWrite, ToolSelect, ToolChange, ProgramPause, ProgramEnd,
-                            OperatorMessage, OverrideControl, ProgramDemarcation>;
+                            WorkOffsetChange, StoredOffsetWrite, ToolTableWrite, ToolSelect, ToolChange, ProgramPause,
+                            ProgramEnd, OperatorMessage, OverrideControl, ProgramDemarcation>;
 
 }  // namespace kerf::gcode

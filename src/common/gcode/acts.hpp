@@ -6,6 +6,11 @@
 
 namespace kerf::gcode {
 
+/// Puts a tool length in force; a status report owes the change.
+void set_tool_length(const AxisValues& value, BlockContext& context);
+/// Carries out G10 L1, L10 or L11.
+void write_tool_entry(const Block& block, BlockContext& context);
+
 // act_modes.cpp: modes, spindle, tools, offsets, program flow.
 ErrorCode act_macro(Block& block, BlockContext& context);
 ErrorCode act_laser(Block& block, BlockContext& context);

@@ -157,6 +157,9 @@ struct Block {
   bool laser_is_motion = false;
   bool spindle_force_sync = false;
 
+  /// G10 L1, L10, L11: what becomes of the table entry `stored_index`.
+  std::optional<Tool> tool_entry;
+
   MacroRequest macro_request;
   std::string message;
 
@@ -173,6 +176,13 @@ struct BlockContext {
   std::vector<Action>& out;
 
   [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(settings.axes); }
+  /// Is there such an entry in the tool table? (grblHAL)
+  [[nodiscard]] bool knows_tool(float number) const { return number <= static_cast<float>(settings.tools); }
+  /// The table; made when it is first asked for.
+  [[nodiscard]] std::vector<Tool>& tools() const {
+    offsets.tools.resize(static_cast<std::size_t>(settings.tools) + 1);
+    return offsets.tools;
+  }
 };
 
 /// Text of a block, ready for its words, and NUL-terminated for the 8-bit counters of the firmwares.

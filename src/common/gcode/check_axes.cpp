@@ -49,7 +49,35 @@ ErrorCode check_g10(Block& block, BlockContext& context) {
   return ErrorCode::Ok;
 }
 
-// Without tool table and rotation: L2 and L20 only, and P is looked at before L.
+/// L1 writes the entry, L10 and L11 take it from where the machine or G59.3 is.
+ErrorCode check_tool_entry(Block& block, BlockContext& context, std::uint8_t index) {
+  if (!context.knows_tool(static_cast<float>(index))) return ErrorCode::IllegalToolNumber;
+  block.stored_index = index;
+  Tool entry = context.tools()[index];
+  if (block.words.has('R')) {
+    entry.radius_mm = block.modal.inches ? inches_to_mm(context.rules.floats, block.r) : block.r;
+    block.words.take('R');
+  }
+  constexpr std::size_t kToolSetter = 8;
+  for (std::size_t axis = 0; axis < context.axes(); ++axis) {
+    float& length = entry.length_mm[axis];
+    if (!block.has_axis(axis)) {
+      if (block.l != 1) length = context.offsets.tool_length[axis];
+    } else if (block.l == 1) {
+      length = block.xyz[axis];
+    } else if (block.l == 10) {
+      length = context.state.position_mm[axis] - context.state.work_offset_mm[axis] - context.offsets.g92[axis] -
+               block.xyz[axis];
+    } else {
+      length = context.offsets.work[kToolSetter][axis] - block.xyz[axis];
+    }
+  }
+  block.tool_entry = entry;
+  block.words.take_all("LP");
+  return ErrorCode::Ok;
+}
+
+// Without rotation: L2 and L20, with a tool table also L1, L10 and L11, and P is looked at before L.
 ErrorCode check_g10_grblhal(Block& block, BlockContext& context) {
   std::uint8_t index = 0;
   if (block.l > 0) {
@@ -58,6 +86,8 @@ ErrorCode check_g10_grblhal(Block& block, BlockContext& context) {
     if (block.p < 0.0F) return ErrorCode::NegativeValue;
     index = static_cast<std::uint8_t>(to_int32(std::trunc(block.p)));
   }
+  const bool of_tool = block.l == 1 || block.l == 10 || block.l == 11;
+  if (of_tool && context.settings.tools > 0) return check_tool_entry(block, context, index);
   const bool known = block.l == 20 || (block.l == 2 && !block.words.has('R'));
   if (!known) return ErrorCode::UnsupportedCommand;
   if (index > context.rules.work_offsets) return ErrorCode::UnsupportedCoordinateSystem;
@@ -186,7 +216,23 @@ ErrorCode check_tool_length(Block& block, BlockContext&) {
   return asks && block.axis_words != 1U << kToolLengthAxis ? ErrorCode::G43DynamicAxisError : ErrorCode::Ok;
 }
 
-ErrorCode check_tool_length_grblhal(Block& block, BlockContext&) {
+// G43 without H, or with H0, takes the length of the tool itself.
+ErrorCode check_tool_length_grblhal(Block& block, BlockContext& context) {
+  const ToolLengthMode mode = block.modal.tool_length;
+  if (block.groups.has(Group::G8) && mode == ToolLengthMode::FromTable) {
+    if (block.words.has('H')) {
+      if (block.h == 0.0F) block.h = block.t;
+      if (!context.knows_tool(block.h)) return ErrorCode::IllegalToolNumber;
+      block.words.take('H');
+    } else if (!block.groups.has(Group::M6)) {
+      block.h = block.words.has('T') ? block.t : static_cast<float>(context.state.tool);
+    }
+  }
+  if (block.groups.has(Group::G8) && mode == ToolLengthMode::Additional) {
+    if (!block.words.has('H')) return ErrorCode::ValueWordMissing;
+    if (block.h == 0.0F || !context.knows_tool(block.h)) return ErrorCode::IllegalToolNumber;
+    block.words.take('H');
+  }
   const bool asks = block.groups.has(Group::G8) && block.modal.tool_length == ToolLengthMode::Dynamic;
   return asks && block.axis_words == 0 ? ErrorCode::G43DynamicAxisError : ErrorCode::Ok;
 }

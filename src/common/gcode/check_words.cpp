@@ -21,6 +21,11 @@ ErrorCode check_whole_not_negative(float value) {
   return value < 0.0F ? ErrorCode::NegativeValue : ErrorCode::Ok;
 }
 
+/// With a table only its tools exist.
+bool is_known_tool(float number, const BlockContext& context) {
+  return context.settings.tools > 0 ? context.knows_tool(number) : number <= kLargestTool;
+}
+
 }  // namespace
 
 // G65, G66 and M98 need P; their other words are passed on as they are.
@@ -69,10 +74,10 @@ ErrorCode check_line_number(Block& block, BlockContext&) {
   return too_large ? ErrorCode::InvalidLineNumber : ErrorCode::Ok;
 }
 
-ErrorCode check_tool_and_length_numbers(Block& block, BlockContext&) {
+ErrorCode check_tool_and_length_numbers(Block& block, BlockContext& context) {
   if (block.words.has('T')) {
     if (const ErrorCode error = check_whole_not_negative(block.t); error != ErrorCode::Ok) return error;
-    if (block.t > kLargestTool) return ErrorCode::IllegalToolNumber;
+    if (!is_known_tool(block.t, context)) return ErrorCode::IllegalToolNumber;
   }
   return block.words.has('H') ? check_whole_not_negative(block.h) : ErrorCode::Ok;
 }
@@ -162,7 +167,7 @@ ErrorCode check_tool_set(Block& block, BlockContext& context) {
   if (block.tool_set) {
     if (!block.words.has('Q')) return ErrorCode::ValueWordMissing;
     if (!is_whole(block.q)) return ErrorCode::CommandValueNotInteger;
-    if (block.q > kLargestTool) return ErrorCode::IllegalToolNumber;
+    if (!is_known_tool(block.q, context)) return ErrorCode::IllegalToolNumber;
     block.t = block.q;
     block.groups.remove(Group::M6);
     block.words.take('Q');

@@ -121,6 +121,10 @@ class Collector {
       case Meaning::Distance: modal.incremental = row.argument != 0; break;
       case Meaning::FeedMode: modal.feed_mode = static_cast<FeedMode>(row.argument); break;
       case Meaning::Units: modal.inches = row.argument != 0; break;
+      case Meaning::TableToolLength:
+        if (context_.settings.tools == 0) return std::nullopt;
+        modal.tool_length = static_cast<ToolLengthMode>(row.argument);
+        break;
       case Meaning::ToolLength: modal.tool_length = static_cast<ToolLengthMode>(row.argument); break;
       case Meaning::WorkOffset: modal.work_offset = row.argument; break;
       case Meaning::Retract: modal.retract = static_cast<RetractMode>(row.argument); break;

@@ -238,7 +238,7 @@ constexpr CommandRow kRabbitM[] = {
     pin(68, PinWord::Analog),
 };
 
-// grblHAL core gcode.c, without tool table, lathe mode, cutter compensation, I/O ports and user M-codes.
+// grblHAL core gcode.c, without lathe mode, cutter compensation, I/O ports and user M-codes.
 constexpr CommandRow kGrblHalG[] = {
     motion(0, MotionMode::Rapid),
     motion(1, MotionMode::Linear),
@@ -265,6 +265,8 @@ constexpr CommandRow kGrblHalG[] = {
     probe(50, MotionMode::ProbeAwayNoError, false),
     kG40,
     else_unsupported(claiming(tool_length(43, 10, ToolLengthMode::Dynamic), AxisCommand::ToolLength)),
+    word(43, Group::G8, Meaning::TableToolLength, code(ToolLengthMode::FromTable)),
+    with_fraction(word(43, Group::G8, Meaning::TableToolLength, code(ToolLengthMode::Additional)), 20),
     any_fraction(tool_length(49, 0, ToolLengthMode::None)),
     claims_first(claiming(word(50, Group::G11, Meaning::Scaling, 0), AxisCommand::Scaling, Claim::Takes)),
     claims_first(claiming(word(51, Group::G11, Meaning::Scaling, 1), AxisCommand::Scaling, Claim::Takes)),

@@ -20,6 +20,7 @@ enum class Meaning : std::uint8_t {
   FeedMode,
   Units,
   ToolLength,
+  TableToolLength,  // G43 and G43.2 of grblHAL: only with a tool table
   WorkOffset,
   Retract,
   Scaling,

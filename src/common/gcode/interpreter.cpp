@@ -86,17 +86,30 @@ void Interpreter::reset() {
   reload_offsets();
 }
 
+void Interpreter::stop() {
+  const ModalState old = state_.modal;
+  reset();
+  state_.modal.work_offset = old.work_offset;
+  state_.modal.tool_length = old.tool_length;
+  reload_offsets();
+}
+
 void Interpreter::sync_position(const AxisValues& mm) {
   state_.position_mm = mm;
 }
 
 void Interpreter::complete_tool_change() {
   if (state_.arriving_tool) state_.tool = *state_.arriving_tool;
+  if (state_.arriving_length) {
+    state_.modal.tool_length = ToolLengthMode::FromTable;
+    offsets_.tool_length = offsets_.tools.at(*state_.arriving_length).length_mm;
+  }
   abort_tool_change();
 }
 
 void Interpreter::abort_tool_change() {
   state_.arriving_tool.reset();
+  state_.arriving_length.reset();
   state_.tool_change_pending = false;
 }
 

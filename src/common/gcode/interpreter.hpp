@@ -36,6 +36,8 @@ struct InterpreterSettings {
   bool restore_overrides_at_end = false;
   /// grblHAL `$486`, bit n: G59.n+1 may not be changed.
   unsigned locked_work_offsets = 0;
+  /// grblHAL: tools in the table; without one G43 and G43.2 do not exist.
+  int tools = 0;
   /// grblHAL `$376`: bit n set where axis n turns; G20 leaves it alone.
   vocabulary::AxisMask rotary_axes = 0;
   /// grblHAL `$41` bit 2: M56 exists.
@@ -58,6 +60,8 @@ class Interpreter {
   /// The text after `$J=`. Changes no state: the owner checks the travel, then calls sync_position with the target.
   std::expected<JogMove, ErrorCode> interpret_jog(std::string_view after_dollar_j);
 
+  /// grblHAL's 0x19: as reset(), but the selected work offset and the kind of tool length offset stay.
+  void stop();
   /// Soft reset: modal state, tool and offsets as this firmware clears them (protocol.md 1.2); the position stays.
   void reset();
 

@@ -3,12 +3,20 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "common/gcode/action.hpp"
 
 namespace kerf::gcode {
 
 inline constexpr std::size_t kMaxWorkOffsets = 9;
+
+/// One entry of grblHAL's tool table.
+struct Tool {
+  AxisValues length_mm{};
+  float radius_mm = 0.0F;
+  bool operator==(const Tool&) const = default;
+};
 
 /// All values in mm. Which of them survive a reset is the firmware's affair (protocol.md 1.2).
 struct Offsets {
@@ -21,6 +29,9 @@ struct Offsets {
   AxisValues g92_stored{};
   /// Grbl and Rabbit use Z only.
   AxisValues tool_length{};
+  /// The tool table: entry 0 is for tools that have none, and lives until power-off only. Empty where there is no
+  /// table.
+  std::vector<Tool> tools;
   /// Machine position of the last probe contact, and whether there was one.
   AxisValues probe{};
   bool probe_succeeded = false;

@@ -134,6 +134,8 @@ struct ParserState {
   bool tool_change_pending = false;
   /// The tool that this M6 brings; a failed line meanwhile forgets it, and the old tool stays.
   std::optional<std::uint32_t> arriving_tool;
+  /// G43 in the block of that M6: the table entry whose length comes with the tool.
+  std::optional<std::uint32_t> arriving_length;
   std::int32_t line_number = 0;
   /// Where the last block ends, machine coordinates.
   AxisValues position_mm{};

@@ -19,9 +19,13 @@ enum class BuildOption : std::uint8_t {
   CutterCompensation,
   FileSystem,
   Bluetooth,
-  Driver,  ///< depends on the board's driver or a plugin
+  Driver,    ///< depends on the board's driver or a plugin
+  FourAxes,  ///< machines with four axes or more
+  FiveAxes,
+  SixAxes,
 };
-BOOST_DESCRIBE_ENUM(BuildOption, Usual, Expressions, CutterCompensation, FileSystem, Bluetooth, Driver)
+BOOST_DESCRIBE_ENUM(BuildOption, Usual, Expressions, CutterCompensation, FileSystem, Bluetooth, Driver, FourAxes,
+                    FiveAxes, SixAxes)
 
 /// One error or alarm of one firmware, in our own words. `title` fits a headline (no full stop); `text` says the cause
 /// and what to do. Neither contains `|`, `]` or `"`, so the virtual controllers can print them in enumerations.

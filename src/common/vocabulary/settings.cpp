@@ -65,6 +65,8 @@ constexpr std::array kGroups{
     SettingGroupRow{51, 42, "W-axis"},
 };
 
+constexpr int kUsualAxes = 3;
+
 }  // namespace
 
 std::span<const SettingGroupRow> setting_group_rows() {
@@ -118,8 +120,39 @@ int group_of(const SettingMatch& match) {
   return match.row->group + match.axis;
 }
 
-std::string_view item_of(const SettingRow& row, int index) {
-  std::string_view items = row.format;
+std::string format_of(const SettingRow& row, int axes) {
+  constexpr std::string_view kAxisItem = "-Axis";
+  std::string format;
+  const bool wide = axes > kUsualAxes && !row.rotary_format.empty();
+  for (const std::string_view item : base::split(wide ? row.rotary_format : row.format, ',')) {
+    const bool names_axis = item.size() == kAxisItem.size() + 1 && item.ends_with(kAxisItem);
+    const std::optional<Axis> axis = names_axis ? axis_of(item.front()) : std::nullopt;
+    if (axis && static_cast<int>(index_of(*axis)) >= axes) continue;
+    if (!format.empty()) format += ',';
+    format += item;
+  }
+  return format;
+}
+
+std::string unit_of(const SettingMatch& match, AxisMask rotary_axes) {
+  constexpr std::string_view kLength = "mm";
+  std::string unit{match.row->unit};
+  const bool turns = match.row->per_axis && ((rotary_axes >> static_cast<unsigned>(match.axis)) & 1U) != 0;
+  if (const auto at = unit.find(kLength); turns && at != std::string::npos) unit.replace(at, kLength.size(), "deg");
+  return unit;
+}
+
+bool is_usual(const SettingRow& row, int axes) {
+  switch (row.build) {
+    case BuildOption::Usual: return true;
+    case BuildOption::FourAxes: return axes > kUsualAxes;
+    case BuildOption::FiveAxes: return axes > kUsualAxes + 1;
+    case BuildOption::SixAxes: return axes > kUsualAxes + 2;
+    default: return false;
+  }
+}
+
+std::string_view item_of(std::string_view items, int index) {
   for (; index > 0; --index) {
     const std::size_t comma = items.find(',');
     if (comma == std::string_view::npos) return {};

@@ -86,12 +86,14 @@ struct SettingRow {
   bool allow_null = false;           ///< the empty text is accepted; for numbers: 0 is, below `min`
   bool per_axis = false;
   BuildOption build = BuildOption::Usual;  ///< `Usual` rows are in the reference build's `$$`
-  std::string_view path{};                 ///< Rabbit's name, such as "Homing/Enable"; `id` is -1 if that is all it has
+  /// As `format`, on machines with more than three axes; empty if it is the same.
+  std::string_view rotary_format{};
+  std::string_view path{};  ///< Rabbit's name, such as "Homing/Enable"; `id` is -1 if that is all it has
   friend constexpr bool operator==(const SettingRow&, const SettingRow&) = default;
 };
 BOOST_DESCRIBE_STRUCT(SettingRow, (),
                       (id, group, name, unit, type, format, min, max, default_value, description, reboot, allow_null,
-                       per_axis, build, path))
+                       per_axis, build, rotary_format, path))
 
 // Marks for rows of the tables, so that they stay one line.
 [[nodiscard]] constexpr SettingRow per_axis(SettingRow row) {
@@ -104,6 +106,12 @@ BOOST_DESCRIBE_STRUCT(SettingRow, (),
 }
 [[nodiscard]] constexpr SettingRow allows_null(SettingRow row) {
   row.allow_null = true;
+  return row;
+}
+/// Only on machines with so many axes.
+[[nodiscard]] constexpr SettingRow exists_with(BuildOption build, std::string_view default_value, SettingRow row) {
+  row.build = build;
+  row.default_value = default_value;
   return row;
 }
 [[nodiscard]] constexpr SettingRow named(std::string_view path, SettingRow row) {
@@ -143,8 +151,14 @@ struct SettingMatch {
 [[nodiscard]] std::string full_name(const SettingMatch& match);
 /// The group as `$ES` prints it: an axis has its own.
 [[nodiscard]] int group_of(const SettingMatch& match);
+/// The format as `$ES` prints it on a machine with `axes` axes: items named after an axis it lacks ("B-Axis") go.
+[[nodiscard]] std::string format_of(const SettingRow& row, int axes);
+/// The unit as `$ES` prints it: `step/deg` instead of `step/mm` for an axis that turns.
+[[nodiscard]] std::string unit_of(const SettingMatch& match, AxisMask rotary_axes);
+/// True if a build with `axes` axes and nothing optional has the row.
+[[nodiscard]] bool is_usual(const SettingRow& row, int axes);
 /// The items of a bit field or radio, in order; unavailable ones are "N/A".
-[[nodiscard]] std::string_view item_of(const SettingRow& row, int index);
+[[nodiscard]] std::string_view item_of(std::string_view format, int index);
 /// Digits after the point that the firmware prints: those of the default, else of the `#0.000##` mask.
 [[nodiscard]] int decimals_of(const SettingRow& row);
 

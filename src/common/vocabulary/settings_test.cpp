@@ -154,10 +154,10 @@ TEST(Settings, LimitsAreNumbersAndTexts) {
 
 TEST(Settings, ItemsOfBitFields) {
   const SettingRow& homing = *match(Firmware::GrblHal, 22).row;
-  EXPECT_EQ(item_of(homing, 0), "Enable");
-  EXPECT_EQ(item_of(homing, 7), "N/A");
-  EXPECT_EQ(item_of(homing, 10), "Run startup scripts only on homing completed");
-  EXPECT_EQ(item_of(homing, 11), "");
+  EXPECT_EQ(item_of(homing.format, 0), "Enable");
+  EXPECT_EQ(item_of(homing.format, 7), "N/A");
+  EXPECT_EQ(item_of(homing.format, 10), "Run startup scripts only on homing completed");
+  EXPECT_EQ(item_of(homing.format, 11), "");
   EXPECT_EQ(decimals_of(*match(Firmware::GrblHal, 100).row), 5);
   EXPECT_EQ(decimals_of(*match(Firmware::GrblHal, 33).row), 1);
   EXPECT_EQ(decimals_of(*match(Firmware::Grbl, 30).row), 0);
