@@ -18,8 +18,8 @@ using namespace std::chrono_literals;
 /// A controller that is switched on, its start-up text read. Homing switches stand where they stand by default.
 class Bench {
  public:
-  explicit Bench(vocabulary::Firmware firmware, StoredState stored = factory())
-      : controller(personality_of(firmware), std::move(stored)) {
+  explicit Bench(vocabulary::Firmware firmware, StoredState stored = factory(), Equipment equipment = {})
+      : controller(personality_of(firmware), std::move(stored), std::move(equipment)) {
     controller.power_on(now);
     heard_at_start = hear();
   }

@@ -69,7 +69,7 @@ std::string_view name_of(StoredOffset which) {
   return kOffsetNames.at(index_of(which));
 }
 
-Board::Board(const Personality& owner, StoredState memory)
+Board::Board(const Personality& owner, StoredState memory, Equipment fitted)
     : personality(owner),
       stored(std::move(memory)),
       settings(owner, axes_of(owner, stored)),
@@ -78,6 +78,8 @@ Board::Board(const Personality& owner, StoredState memory)
       interpreter(gcode::rules_for(owner.firmware)),
       planner(motion::rules_of(owner.firmware), settings.motion()),
       executor(planner, motion::rules_of(owner.firmware)),
+      equipment(std::move(fitted)),
+      slot{.card = equipment.card},
       block_targets_mm(kMostBlocks) {
   apply_settings();
   load_offsets();

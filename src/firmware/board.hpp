@@ -15,6 +15,9 @@
 #include "common/vocabulary/alarms.hpp"
 #include "common/vocabulary/machine_state.hpp"
 #include "common/vocabulary/messages.hpp"
+#include "firmware/card_slot.hpp"
+#include "firmware/equipment.hpp"
+#include "firmware/file_job.hpp"
 #include "firmware/motion_log.hpp"
 #include "firmware/outbox.hpp"
 #include "firmware/personality.hpp"
@@ -83,7 +86,7 @@ struct MotionMessage {
 
 /// One controller's shared memory. The parts (Cycle, Foreground, Reporter, ...) change it; it decides nothing itself.
 struct Board {
-  explicit Board(const Personality& owner, StoredState memory);
+  explicit Board(const Personality& owner, StoredState memory, Equipment fitted = {});
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
 
@@ -96,6 +99,9 @@ struct Board {
   motion::Planner planner;
   motion::Executor executor;
   Workcell workcell;
+  Equipment equipment;
+  CardSlot slot;
+  FileJob job;
 
   /// The last instant that went in.
   Instant now{};

@@ -75,15 +75,16 @@ bool Foreground::reads_lines() const {
 }
 
 bool Foreground::read_line() {
-  while (reads_lines() && !receiver_.empty()) {
-    const char byte = receiver_.pop();
-    if (byte == Receiver::kCancelMark) {
+  while (reads_lines()) {
+    const auto byte = next_byte();
+    if (!byte) break;
+    if (*byte == Receiver::kCancelMark) {
       reader_.clear();
       last_error_ = ErrorCode::Ok;
       cycle_.jog_cancel();
       continue;
     }
-    if (const auto line = reader_.push(byte)) {
+    if (const auto line = reader_.push(*byte)) {
       begin_line(*line);
       return true;
     }
@@ -134,9 +135,29 @@ void Foreground::execute_block(std::string_view text) {
     steps_.emplace_back(Answer{.code = last_error_});
     return;
   }
+  FileJob& job = board_.job;
+  board_.interpreter.settings().file_line = job.is_read() && !job.is_drained() ? job.line() : 0;
+  const std::int32_t line_before = board_.interpreter.state().line_number;
   const auto result = add_block_steps(board_, text, steps_);
   if (!result) reader_.block_failed();
+  // An N word moves the count of the file's lines (fs_stream.c onLineNumberAssigned).
+  const std::int32_t line = board_.interpreter.state().line_number;
+  if (job.is_read() && line != line_before && line != 0) job.set_line(line);
   steps_.emplace_back(Answer{.code = result ? ErrorCode::Ok : result.error()});
+}
+
+bool Foreground::is_program_end(const Step& step) {
+  const auto* perform = std::get_if<Perform>(&step);
+  return perform != nullptr && std::holds_alternative<gcode::ProgramEnd>(perform->action);
+}
+
+Say Foreground::saying_program_end() const {
+  return {.message = protocol::Feedback{
+              .text = std::string{vocabulary::feedback_text(board_.personality.firmware, FeedbackText::ProgramEnd)}}};
+}
+
+void Foreground::append_steps(Steps steps) {
+  steps_.insert(steps_.end(), std::make_move_iterator(steps.begin()), std::make_move_iterator(steps.end()));
 }
 
 void Foreground::reset() {
@@ -147,6 +168,7 @@ void Foreground::reset() {
   homing_.abandon();
   board_.set_accessories({});
   board_.position_lost = board_.position_lost || moved;
+  const bool ends_program = std::ranges::any_of(steps_, is_program_end);
   steps_.clear();
   until_.reset();
   is_frozen_ = false;
@@ -154,6 +176,8 @@ void Foreground::reset() {
   receiver_.forget_aside();
   receiver_.clear();
   if (moved) steps_.emplace_back(RaiseAlarm{.code = homes ? AlarmCode::HomingFailReset : AlarmCode::AbortCycle});
+  append_steps(interrupted_file());
+  if (ends_program && board_.personality.interrupted_program_ends) steps_.emplace_back(saying_program_end());
   if (in_line_ && board_.personality.dialect().failed_line_answers_across_reset) steps_.emplace_back(Answer{});
   steps_.emplace_back(Restart{});
 }
@@ -165,6 +189,7 @@ void Foreground::fail(AlarmCode code) {
   board_.position_lost = true;
   steps_.clear();
   steps_.emplace_back(RaiseAlarm{.code = code});
+  append_steps(interrupted_file());
   if (in_line_ && board_.personality.dialect().failed_line_answers_across_reset) steps_.emplace_back(Answer{});
   steps_.emplace_back(Restart{});
 }
@@ -178,14 +203,23 @@ void Foreground::enter_critical_alarm(AlarmCode code) {
   const auto text = code == AlarmCode::EmergencyStop && board_.personality.start.has_homing_alarm
                         ? FeedbackText::EmergencyStop
                         : FeedbackText::ResetToContinue;
-  steps_.insert(steps_.end(), {RaiseAlarm{.code = code},
-                               Say{.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(
+  steps_.emplace_back(RaiseAlarm{.code = code});
+  append_steps(interrupted_file());
+  steps_.insert(steps_.end(), {Say{.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(
                                                                      board_.personality.firmware, text)}}},
                                EnterCritical{}});
 }
 
 void Foreground::abandon_line() {
+  const bool ends_program = std::ranges::any_of(steps_, is_program_end);
   steps_.clear();
+  if (board_.job.is_running()) {
+    board_.say(protocol::Feedback{.text = file_interruption()});
+    end_file_job();
+  }
+  if (ends_program && board_.personality.interrupted_program_ends) {
+    steps_.insert(steps_.end(), {Synchronize{}, saying_program_end()});
+  }
   until_.reset();
   is_frozen_ = false;
   in_line_ = false;
@@ -213,7 +247,7 @@ void Foreground::emergency_stop() {
 void Foreground::acknowledge_tool_change() {
   if (board_.state != MachineState::Tool || board_.tool_acknowledged) return;
   board_.tool_acknowledged = true;
-  receiver_.set_aside();
+  if (!board_.job.is_running()) receiver_.set_aside();
 }
 
 void Foreground::end_tool_change() {
@@ -221,6 +255,7 @@ void Foreground::end_tool_change() {
   board_.interpreter.complete_tool_change();
   board_.tool_acknowledged = false;
   receiver_.restore();
+  board_.job.resume();
   board_.state = MachineState::Idle;
   cycle_.auto_start();
   board_.report.tool = true;
@@ -261,8 +296,13 @@ void Foreground::look_at_switches() {
 }
 
 Receiver::LineContext Foreground::line_context() const {
-  if (!board_.personality.keeps_special_bytes || !reader_.keeps_realtime_characters()) return {};
-  return {.keeps_high_bytes = true, .keeps_printable_commands = !board_.settings.flag(setting::kLegacyRealtime)};
+  const bool drops_text = board_.job.is_read();
+  if (!board_.personality.keeps_special_bytes || !reader_.keeps_realtime_characters()) {
+    return {.drops_text = drops_text};
+  }
+  return {.keeps_high_bytes = true,
+          .keeps_printable_commands = !board_.settings.flag(setting::kLegacyRealtime),
+          .drops_text = drops_text};
 }
 
 Instant Foreground::next_deadline() const {

@@ -75,6 +75,8 @@ class Foreground {
   bool operator()(CheckAtStart& step);
   bool operator()(RunStartupLines& step);
   bool operator()(RunStartupBlock& step);
+  bool operator()(BeginFileJob& step);
+  bool operator()(EndFileJob& step);
   bool operator()(EnterSleep& step);
   bool operator()(EnterToolChange& step);
   bool operator()(FinishHoming& step);
@@ -82,12 +84,22 @@ class Foreground {
  private:
   bool advance_front();
   bool read_line();
+  /// From the file that is run, else from the stream.
+  std::optional<char> next_byte();
+  std::optional<char> next_file_byte();
+  void end_file_job();
+  /// A file that ends by force says so.
+  [[nodiscard]] std::string file_interruption() const;
+  [[nodiscard]] Steps interrupted_file() const;
   void begin_line(const gcode::ReadLine& line);
   void execute_block(std::string_view text);
   [[nodiscard]] bool reads_lines() const;
   [[nodiscard]] bool locks_gcode() const;
   bool wait_for(WaitingFor what);
   void insert_front(Steps steps);
+  void append_steps(Steps steps);
+  [[nodiscard]] static bool is_program_end(const Step& step);
+  [[nodiscard]] Say saying_program_end() const;
   /// True if the target is fine; otherwise the soft limit alarm is under way.
   bool check_travel(const AxisValues& target_mm);
   bool has_planner_room();

@@ -16,6 +16,11 @@ using vocabulary::FeedbackText;
 bool Foreground::operator()(Answer& step) {
   last_error_ = step.code;
   in_line_ = false;
+  if (board_.job.is_read()) {
+    if (step.code == ErrorCode::Ok) return true;
+    board_.say(protocol::FileError{.code = vocabulary::number_of(step.code), .line = board_.job.line()});
+    end_file_job();
+  }
   if (step.code == ErrorCode::Ok) {
     board_.say(protocol::Ok{});
   } else {
@@ -160,6 +165,7 @@ bool Foreground::operator()(Perform& step) {
                      board_.owe_accessories();
                      if (end.restores_overrides) restore_overrides();
                    }
+                   if (board_.job.is_read()) end_file_job();
                    board_.say(FeedbackText::ProgramEnd);
                  },
                  [](const auto&) {},
@@ -336,6 +342,10 @@ bool Foreground::operator()(EnterToolChange& /*step*/) {
   }
   board_.state = MachineState::Tool;
   board_.tool_acknowledged = false;
+  if (board_.job.is_running()) {
+    board_.job.suspend();
+    receiver_.clear();
+  }
   return true;
 }
 

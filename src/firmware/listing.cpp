@@ -1,6 +1,7 @@
 #include "firmware/listing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "common/base/text.hpp"
@@ -50,6 +51,9 @@ std::string range_words(const SettingRow& row) {
 bool is_list(SettingType type) {
   return type == SettingType::Bitfield || type == SettingType::ExclusiveBitfield || type == SettingType::Radio;
 }
+
+/// What a build with a card slot names in `$I` (versions of Plugin_SD_card, June 2026).
+constexpr std::array<std::string_view, 2> kCardPlugins = {"SDCARD v1.27", "FS stream v1.12"};
 
 }  // namespace
 
@@ -194,6 +198,7 @@ std::vector<std::string> Listing::new_options() const {
   if (settings.number(setting::kMode) == 2.0) flags.emplace_back("LATHE");
   if (settings.number(setting::kToolChangeMode) != 4.0) flags.emplace_back("TC");
   flags.emplace_back("SED");
+  if (board_.slot.exists()) flags.emplace_back("SD");
   return flags;
 }
 
@@ -220,6 +225,10 @@ void Listing::build_information(bool extended) {
   board_.say(protocol::FirmwareName{.name = std::string{dialect.firmware_field}});
   for (const auto& [key, value] : board_.personality.build_rows) {
     board_.say(protocol::BuildRow{.key = std::string{key}, .value = std::string{value}});
+  }
+  if (!board_.slot.exists()) return;
+  for (const std::string_view plugin : kCardPlugins) {
+    board_.say(protocol::BuildRow{.key = "PLUGIN", .value = std::string{plugin}});
   }
 }
 

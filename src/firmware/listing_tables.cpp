@@ -13,8 +13,9 @@ using vocabulary::SettingType;
 
 namespace {
 
-bool is_compiled_in(const vocabulary::CodeRow& row) {
-  return row.build == vocabulary::BuildOption::Usual;
+bool is_compiled_in(const vocabulary::CodeRow& row, const Board& board) {
+  return row.build == vocabulary::BuildOption::Usual ||
+         (row.build == vocabulary::BuildOption::FileSystem && board.slot.exists());
 }
 
 std::string quoted(std::string_view text) {
@@ -62,7 +63,7 @@ std::string description_of(const SettingRow& row) {
 void Listing::alarms() {
   if (titles()) board_.say(protocol::AlarmCodeRow{.id = 0, .title = "None", .text = "No alarm is active."});
   for (const auto& row : board_.personality.dialect().alarms) {
-    if (row.code != 0 && is_compiled_in(row)) one_alarm(row.code);
+    if (row.code != 0 && is_compiled_in(row, board_)) one_alarm(row.code);
   }
 }
 
@@ -78,7 +79,7 @@ void Listing::errors() {
   board_.say(titles() ? protocol::ErrorCodeRow{.id = 0, .title = "None", .text = "No error occurred."}
                       : protocol::ErrorCodeRow{});
   for (const auto& row : board_.personality.dialect().errors) {
-    if (row.code != 0 && is_compiled_in(row)) one_error(row.code);
+    if (row.code != 0 && is_compiled_in(row, board_)) one_error(row.code);
   }
 }
 
@@ -126,7 +127,7 @@ void Listing::setting_definitions() {
 
 void Listing::codes_as_csv(std::span<const vocabulary::CodeRow> rows) {
   for (const auto& row : rows) {
-    if (is_compiled_in(row)) line(quoted(std::to_string(row.code)) + ",\"N/A\"," + quoted(row.text));
+    if (is_compiled_in(row, board_)) line(quoted(std::to_string(row.code)) + ",\"N/A\"," + quoted(row.text));
   }
 }
 

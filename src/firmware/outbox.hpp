@@ -2,6 +2,7 @@
 // What the controller sends, in order, as bytes.
 
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "common/protocol/encode.hpp"
@@ -20,6 +21,8 @@ class Outbox {
     bytes_ += protocol::encode(message, style_);
     bytes_ += "\r\n";
   }
+  /// As they are, without a line end.
+  void say_bytes(std::string_view bytes) { bytes_ += bytes; }
   /// Follows `$13`.
   void set_style(const protocol::PrintStyle& style) { style_ = style; }
   [[nodiscard]] std::string take() { return std::exchange(bytes_, {}); }

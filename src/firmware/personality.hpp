@@ -227,6 +227,8 @@ struct Personality {
   ErrorCode unknown_setting_error = ErrorCode::InvalidStatement;
   bool reads_lines_in_sleep = false;
   bool sleep_needs_setting = false;  ///< grblHAL `$62`
+  /// grblHAL: M2 and M30 that wait for the motion say `[MSG:Pgm End]` even if a reset or 0x19 ends the wait.
+  bool interrupted_program_ends = false;
   bool check_mode_is_silent = false;
   bool restore_resets = true;  ///< `$RST=` ends in a reset
   bool restores_network = false;

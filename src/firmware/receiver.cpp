@@ -19,7 +19,7 @@ Receiver::Fate Receiver::take(std::uint8_t byte, LineContext context) {
   if (byte == kDelete && personality_.drops_delete && !context.keeps_high_bytes) return Fate::Lost;
   const bool is_realtime = !is_text && vocabulary::is_realtime(personality_.dialect(), byte);
   if (is_realtime && !(full() && personality_.full_buffer_drops_realtime)) return Fate::Realtime;
-  if (is_realtime || !ring_.push_back(static_cast<char>(byte))) return Fate::Lost;
+  if (is_realtime || context.drops_text || !ring_.push_back(static_cast<char>(byte))) return Fate::Lost;
   return Fate::Buffered;
 }
 

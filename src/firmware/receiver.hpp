@@ -28,6 +28,7 @@ class Receiver {
   struct LineContext {
     bool keeps_high_bytes = false;          ///< DEL and bytes from 0xC0 are text
     bool keeps_printable_commands = false;  ///< `?!~` are text
+    bool drops_text = false;                ///< lines come from elsewhere
   };
 
   Fate take(std::uint8_t byte, LineContext context);

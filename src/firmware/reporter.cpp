@@ -121,7 +121,9 @@ StatusReport Reporter::status(std::size_t rx_free) {
   if (!masked || board_.reports(ReportBit::PinState)) {
     if (std::string letters = pins(); !letters.empty()) report.pins = std::move(letters);
   }
+  const bool everything = board_.report.everything;
   add_counted(report);
+  add_card(report, everything);
   return report;
 }
 
@@ -298,6 +300,20 @@ void Reporter::add_changed(StatusReport& report) const {
   if (!all) return;
   report.firmware = std::string{board_.personality.dialect().firmware_field};
   if (board_.critical) report.critical = true;
+}
+
+void Reporter::add_card(StatusReport& report, bool everything) {
+  // grblHAL fs_stream.c, then sdcard.c: both stand behind the fields of the core.
+  if (const FileJob& job = board_.job; job.is_read() && !everything) {
+    std::string percent = base::to_fixed(job.percent(), 1);
+    if (percent == "100.0" && board_.state != MachineState::Idle) percent = "99.9";
+    report.unknown.push_back({.name = "SD", .value = percent + "," + job.name()});
+  }
+  CardSlot& slot = board_.slot;
+  if (slot.mount_changed || (everything && slot.is_reported)) {
+    report.unknown.push_back({.name = "SD", .value = slot.mounted ? "1" : "0"});
+    slot.mount_changed = false;
+  }
 }
 
 void Reporter::say_parser_state() {

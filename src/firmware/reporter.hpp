@@ -36,6 +36,7 @@ class Reporter {
   void add_counted_grbl(protocol::StatusReport& report);
   void add_counted_grblhal(protocol::StatusReport& report);
   void add_changed(protocol::StatusReport& report) const;
+  void add_card(protocol::StatusReport& report, bool everything);
   void say_changed_parser_state();
 
   [[nodiscard]] std::string pins() const;

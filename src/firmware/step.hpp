@@ -87,6 +87,13 @@ struct RunStartupLines {};
 struct RunStartupBlock {
   std::string block{};
 };
+/// From here on lines come from a file on the card.
+struct BeginFileJob {
+  std::string path{};
+  std::uint64_t bytes = 0;
+};
+/// The file is let go of, and unread input with it.
+struct EndFileJob {};
 struct EnterSleep {};
 struct EnterToolChange {};
 /// State Idle and, where the firmware does so, `[MSG:]` and startup lines.
@@ -97,7 +104,7 @@ struct FinishHoming {
 using Step =
     std::variant<Answer, Say, SayStatus, SayProbe, PlanMove, PlanArc, PlanJog, Synchronize, Dwell, Freeze, Perform,
                  HoldForCycleStart, Probe, HomeAxes, RaiseAlarm, StopAtSoftLimit, EnterCritical, Restart, CheckAtStart,
-                 RunStartupLines, RunStartupBlock, EnterSleep, EnterToolChange, FinishHoming>;
+                 RunStartupLines, RunStartupBlock, BeginFileJob, EndFileJob, EnterSleep, EnterToolChange, FinishHoming>;
 
 /// What the foreground is waiting for, to be looked at.
 enum class WaitingFor : std::uint8_t {

@@ -29,16 +29,21 @@ bool homing_is_required(const Board& board) {
 }
 
 std::expected<void, ErrorCode> SystemCommands::execute(std::string_view line, Steps& steps) {
-  const auto command = board_.personality.parse_command(board_.personality, line, board_.state, board_.critical);
-  if (!command) return std::unexpected(command.error());
-  if (!command->states.contains(board_.state)) return std::unexpected(ErrorCode::IdleError);
   Steps added;
-  if (const Result result = dispatch(*command, added); !result) return result;
+  if (const Result result = understand(line, added); !result) return result;
   const bool answers =
       std::ranges::any_of(added, [](const Step& step) { return std::holds_alternative<Answer>(step); });
   if (!answers) added.emplace_back(Answer{});
   steps.insert(steps.end(), added.begin(), added.end());
   return {};
+}
+
+SystemCommands::Result SystemCommands::understand(std::string_view line, Steps& steps) {
+  if (const auto handled = card_commands_.execute(line, steps)) return *handled;
+  const auto command = board_.personality.parse_command(board_.personality, line, board_.state, board_.critical);
+  if (!command) return std::unexpected(command.error());
+  if (!command->states.contains(board_.state)) return std::unexpected(ErrorCode::IdleError);
+  return dispatch(*command, steps);
 }
 
 SystemCommands::Result SystemCommands::dispatch(const ParsedCommand& command, Steps& steps) {

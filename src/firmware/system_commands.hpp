@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "firmware/board.hpp"
+#include "firmware/card_commands.hpp"
 #include "firmware/listing.hpp"
 #include "firmware/reporter.hpp"
 #include "firmware/step.hpp"
@@ -14,7 +15,8 @@ namespace kerf::firmware {
 /// Executes `$` lines. The steps that it appends end in the line's answer, and a reset may follow that.
 class SystemCommands {
  public:
-  SystemCommands(Board& board, Reporter& reporter) : board_(board), reporter_(reporter), listing_(board) {}
+  SystemCommands(Board& board, Reporter& reporter)
+      : board_(board), reporter_(reporter), listing_(board), card_commands_(board) {}
 
   /// `line` without its `$`. An error leaves `steps` alone.
   std::expected<void, ErrorCode> execute(std::string_view line, Steps& steps);
@@ -22,6 +24,7 @@ class SystemCommands {
  private:
   using Result = std::expected<void, ErrorCode>;
 
+  Result understand(std::string_view line, Steps& steps);
   Result dispatch(const ParsedCommand& command, Steps& steps);
   Result dispatch_listing(const ParsedCommand& command);
   Result describe_setting(const ParsedCommand& command);
@@ -44,6 +47,7 @@ class SystemCommands {
   Board& board_;
   Reporter& reporter_;
   Listing listing_;
+  CardCommands card_commands_;
 };
 
 /// True while `$22` bit 2 demands homing first (grblHAL machine_limits.c limits_homing_required).

@@ -15,8 +15,8 @@ namespace kerf::firmware {
 
 /// The parts, wired together in the order in which they need each other.
 struct VirtualController::Parts {
-  Parts(const Personality& personality, StoredState stored)
-      : board(personality, std::move(stored)),
+  Parts(const Personality& personality, StoredState stored, Equipment equipment)
+      : board(personality, std::move(stored), std::move(equipment)),
         receiver(personality),
         cycle(board),
         reporter(board),
@@ -58,8 +58,8 @@ struct VirtualController::Parts {
   bool is_settled = true;
 };
 
-VirtualController::VirtualController(const Personality& personality, StoredState stored)
-    : parts_(std::make_unique<Parts>(personality, std::move(stored))) {}
+VirtualController::VirtualController(const Personality& personality, StoredState stored, Equipment equipment)
+    : parts_(std::make_unique<Parts>(personality, std::move(stored), std::move(equipment))) {}
 VirtualController::~VirtualController() = default;
 VirtualController::VirtualController(VirtualController&&) noexcept = default;
 VirtualController& VirtualController::operator=(VirtualController&&) noexcept = default;

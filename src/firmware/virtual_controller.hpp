@@ -10,6 +10,7 @@
 #include "common/base/time.hpp"
 #include "common/vocabulary/axis.hpp"
 #include "common/vocabulary/machine_state.hpp"
+#include "firmware/equipment.hpp"
 #include "firmware/motion_log.hpp"
 #include "firmware/personality.hpp"
 #include "firmware/stored_state.hpp"
@@ -24,7 +25,7 @@ class VirtualController {
  public:
   /// `stored` is what an earlier life left behind; a default one is a memory fresh from the factory. Stored settings
   /// that the firmware would refuse are dropped; `rejected_settings()` names them.
-  explicit VirtualController(const Personality& personality, StoredState stored = {});
+  explicit VirtualController(const Personality& personality, StoredState stored = {}, Equipment equipment = {});
   ~VirtualController();
   VirtualController(VirtualController&&) noexcept;
   VirtualController& operator=(VirtualController&&) noexcept;

@@ -142,6 +142,14 @@ std::expected<void, TalkFault> read_header(Talk& talk, std::string_view text) {
     talk.settings.emplace_back(value);
   } else if (parts[0] == "power-up") {
     talk.begins_at_power_up = true;
+  } else if (parts[0] == "card") {
+    talk.has_card = true;
+  } else if (parts[0] == "file") {
+    const auto file = base::split_at_most(value, ' ', 2);
+    const auto contents = base::unescape(file.size() > 1 ? file[1] : std::string_view{});
+    if (!contents || file[0].empty()) return std::unexpected(TalkFault::BadEscape);
+    talk.has_card = true;
+    talk.card_files.push_back({.path = std::string{file[0]}, .contents = *contents});
   } else if (parts[0] == "virtual-only") {
     talk.virtual_only_because = std::string(value);
   } else {
@@ -208,7 +216,7 @@ std::string_view explain(TalkFault fault) {
       return "a line begins with '->', '=>', '<-', '<~', '<!', '@', '%' or '#', then one space";
     case TalkFault::BadCount: return "this header wants a whole number";
     case TalkFault::UnknownHeader:
-      return "this header is none of personality, axes, tools, setting, power-up and virtual-only";
+      return "this header is none of personality, axes, tools, setting, power-up, card, file and virtual-only";
     case TalkFault::HeaderAfterStep: return "headers stand before the first step";
     case TalkFault::UnknownPersonality:
       return "nobody knows who speaks: add '% personality grbl', 'rabbit' or 'grblhal'";

@@ -64,6 +64,13 @@ struct Talk {
   std::vector<std::string> settings;
   /// The start-up text is part of the talk.
   bool begins_at_power_up = false;
+  /// The machine has a card slot with a card in it, and these files on the card.
+  bool has_card = false;
+  struct CardFile {
+    std::string path;
+    std::string contents;
+  };
+  std::vector<CardFile> card_files;
   /// Why real firmware cannot be asked; none if it can.
   std::optional<std::string> virtual_only_because;
   std::vector<TalkStep> steps;

@@ -1,6 +1,7 @@
 #include "simulation/talk_runner.hpp"
 
 #include <algorithm>
+#include <memory>
 
 #include "firmware/personality.hpp"
 #include "firmware/virtual_controller.hpp"
@@ -22,13 +23,22 @@ bool deliver(Instant now, TalkConversation& conversation, firmware::VirtualContr
   return !heard.empty() || !said.is_empty();
 }
 
+firmware::Equipment equipment_of(const Talk& talk) {
+  firmware::Equipment equipment;
+  if (!talk.has_card) return equipment;
+  const auto card = std::make_shared<firmware::MemoryCard>();
+  for (const auto& file : talk.card_files) card->put(file.path, file.contents);
+  equipment.card = card;
+  return equipment;
+}
+
 }  // namespace
 
 TalkOutcome run_talk(const Talk& talk) {
   const Instant began{};
   Instant now = began;
   const firmware::Personality built = firmware::built_with(firmware::personality_of(talk.personality), talk.hardware);
-  firmware::VirtualController controller(built);
+  firmware::VirtualController controller(built, {}, equipment_of(talk));
   TalkConversation conversation(talk, now);
   // A talk begins with all switches off and places the homing switches that it needs.
   for (std::size_t axis = 0; axis < vocabulary::kMaxAxes; ++axis) {

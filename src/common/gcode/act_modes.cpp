@@ -133,7 +133,7 @@ ErrorCode act_laser(Block& block, BlockContext& context) {
 }
 
 ErrorCode act_feed(Block& block, BlockContext& context) {
-  context.state.line_number = block.n;
+  context.state.line_number = block.n != 0 ? block.n : context.settings.file_line;
   context.state.modal.feed_mode = block.modal.feed_mode;
   context.state.feed_rate = block.f;
   return ErrorCode::Ok;

@@ -44,6 +44,8 @@ struct InterpreterSettings {
   bool parking_override_control = false;
   /// grblHAL `$28`.
   float g73_retract_mm = 0.1F;
+  /// grblHAL: the line of the file that is run, for blocks without N; 0 while none is.
+  std::int32_t file_line = 0;
 };
 
 /// Executes lines in the order and with the arithmetic of one firmware. A rejected line changes nothing, except for
