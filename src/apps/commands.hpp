@@ -26,6 +26,7 @@ struct VirtualOptions {
   std::string speed = "1";
   std::string settings_file;
   std::string state_file;
+  std::string card_folder;
 };
 [[nodiscard]] ExitStatus serve_virtual(const VirtualOptions& options);
 

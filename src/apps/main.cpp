@@ -74,6 +74,10 @@ void add_virtual(CLI::App& kerf, Chosen& chosen) {
       ->add_option("--state", options->state_file,
                    "Keep settings and offsets in this file, as a real controller does in its memory")
       ->type_name("FILE");
+  command
+      ->add_option("--card", options->card_folder,
+                   "The machine has an SD card: this folder; it takes $FM, $F and runs files (grblhal)")
+      ->type_name("FOLDER");
   command->footer(
       "\nAny sender can connect, for example: kerf run examples/coaster.nc --machine 127.0.0.1:5001\n"
       "One TCP client at a time; a second one is turned away while the first is connected.\n");

@@ -1,6 +1,7 @@
 #include <array>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "firmware/personality.hpp"
 #include "firmware/stored_state.hpp"
 #include "firmware/virtual_controller.hpp"
+#include "io/card_folder.hpp"
 #include "io/controller_host.hpp"
 #include "io/machine_url.hpp"
 #include "io/server.hpp"
@@ -68,6 +70,23 @@ OrComplained<StoredState> stored_state_for(const VirtualOptions& options) {
     if (!applied) return said(explain(applied.error(), options.settings_file));
   }
   return state;
+}
+
+/// What the options plug into the machine.
+OrComplained<firmware::Equipment> equipment_for(const VirtualOptions& options, vocabulary::Firmware personality) {
+  firmware::Equipment equipment;
+  if (options.card_folder.empty()) return equipment;
+  if (!firmware::personality_of(personality).has_plugins) {
+    return said(
+        fmt::format("{} has no card slot: leave --card out, or choose --personality grblhal.", name_of(personality)));
+  }
+  std::error_code fault;
+  if (!std::filesystem::is_directory(options.card_folder, fault)) {
+    return said(
+        fmt::format("{} is no folder that could be a card: make it, or name another one.", options.card_folder));
+  }
+  equipment.card = std::make_shared<io::CardFolder>(options.card_folder);
+  return equipment;
 }
 
 /// Everything that serves one controller. Lives on the event loop's thread.
@@ -138,7 +157,9 @@ ExitStatus serve(const VirtualOptions& options, vocabulary::Firmware personality
                  const std::optional<io::TcpAddress>& address) {
   auto state = stored_state_for(options);
   if (!state) return ExitStatus::Usage;
-  firmware::VirtualController controller(firmware::personality_of(personality), *std::move(state));
+  const auto equipment = equipment_for(options, personality);
+  if (!equipment) return ExitStatus::Usage;
+  firmware::VirtualController controller(firmware::personality_of(personality), *std::move(state), *equipment);
   if (const auto& rejected = controller.rejected_settings(); !rejected.empty()) {
     complain(fmt::format("{} refuses the setting{} ${}: correct {} or leave {} out.", name_of(personality),
                          rejected.size() == 1 ? "" : "s", fmt::join(rejected, ", $"),

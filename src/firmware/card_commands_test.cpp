@@ -9,6 +9,7 @@ namespace kerf::firmware {
 namespace {
 
 using testing::Bench;
+using namespace std::chrono_literals;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -31,7 +32,9 @@ TEST_F(CardTest, FilesComeAndGo) {
 }
 
 TEST_F(CardTest, RowsThatDoNotFitAreLeftOut) {
-  card->put(std::string(30, 'f') + "/" + std::string(40, 'n') + ".nc", "");
+  std::string path(30, 'f');
+  path.append("/").append(40, 'n').append(".nc");
+  card->put(path, "");
   bench.say("$FM");
   EXPECT_THAT(bench.say("$F"), ElementsAre("ok"));
 }

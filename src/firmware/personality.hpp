@@ -215,6 +215,7 @@ struct Personality {
   RealtimeRules realtime{};
 
   bool full_buffer_drops_realtime = false;  ///< Rabbit
+  bool has_plugins = false;                 ///< grblHAL: a card slot and a pendant may be fitted
   bool drops_delete = false;                ///< grblHAL: DEL outside `$` lines never reaches the line
   bool keeps_special_bytes = false;         ///< grblHAL: `$` lines and comments may keep DEL, top-bit bytes and `?!~`
   /// grblHAL's settings beyond Grbl's, and what hangs on them: jog clipping, door and tool change options, reset

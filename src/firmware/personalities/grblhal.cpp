@@ -111,6 +111,7 @@ const Personality kGrblHal = {
                  .resume_says_nothing_said = true,
                  .door_resuming_substate = 4,
                  .door_again_ignored = true},
+    .has_plugins = true,
     .drops_delete = true,
     .keeps_special_bytes = true,
     .has_extended_settings = true,
