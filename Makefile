@@ -2,10 +2,12 @@
 JOBS ?= $(shell nproc)
 # SINCE=<commit> lets `make lint` look only at what changed since then.
 SINCE ?=
+# PEER=<stock grblHAL simulator> lets `make bench` measure that too.
+PEER ?=
 # How long `make test` runs each fuzz target.
 KERF_FUZZ_SECONDS ?= 20
 
-.PHONY: run build test tidy format lint clean
+.PHONY: run build test bench tidy format lint clean
 
 # A part of about four minutes, cut by the built-in virtual grblHAL ten times as fast.
 run: build
@@ -26,6 +28,17 @@ test:
 	cmake --preset asan -DKERF_FUZZ_SECONDS=$(KERF_FUZZ_SECONDS)
 	cmake --build --preset asan -j $(JOBS)
 	ctest --preset asan
+
+# How fast Kerf plans and simulates (bench/README.md). The simulator listens on every interface, so it gets a network of
+# its own.
+BENCH = build/release/bench/speed --kerf build/kerf examples/coaster.nc
+bench: build
+	cmake --build --preset release --target speed -j $(JOBS)
+ifeq ($(PEER),)
+	$(BENCH)
+else
+	unshare --map-root-user --net sh -c 'ip link set lo up && exec $(BENCH) --peer $(PEER)'
+endif
 
 # The rules of docs/architecture.md, in a second.
 tidy:

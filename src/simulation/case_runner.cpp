@@ -10,6 +10,7 @@
 #include "common/base/text.hpp"
 #include "common/protocol/decode.hpp"
 #include "firmware/virtual_controller.hpp"
+#include "simulation/standstill.hpp"
 
 namespace kerf::simulation {
 namespace {
@@ -22,8 +23,6 @@ constexpr std::string_view kSoftReset = "\x18";
 constexpr Duration kMostTime = 600s;
 /// Resets that one case may need; a machine that waits again after so many is left alone.
 constexpr int kMostResets = 8;
-/// More turns than any controller needs at one instant.
-constexpr int kMostTurnsAtOnce = 10'000;
 
 bool is_reset_after_alarm(vocabulary::Firmware firmware) {
   return firmware == vocabulary::Firmware::Grbl || firmware == vocabulary::Firmware::Rabbit;
@@ -78,12 +77,9 @@ class CaseRun {
   /// Until every line has its answer and the machine rests.
   void converse() {
     const Instant limit = now_ + kMostTime;
-    Instant last_turn = now_;
-    int turns = 0;
+    Standstill standstill;
     while (now_ <= limit) {
-      turns = now_ == last_turn ? turns + 1 : 0;
-      last_turn = now_;
-      if (turns > kMostTurnsAtOnce) return;
+      if (standstill.lasts(controller_, next_)) return;
       if (send_next()) continue;
       const Instant next = std::min(controller_.next_deadline(), next_injection());
       if (is_answered() && controller_.next_deadline() == kNever) return;

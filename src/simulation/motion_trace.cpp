@@ -9,6 +9,7 @@
 #include "common/base/text.hpp"
 #include "common/protocol/decode.hpp"
 #include "firmware/virtual_controller.hpp"
+#include "simulation/standstill.hpp"
 
 namespace kerf::simulation {
 namespace {
@@ -19,8 +20,6 @@ constexpr std::int64_t kBitsPerByte = 10;
 /// What a careful sender has under way at most (interpreter-cases.md).
 constexpr std::size_t kWindow = 127;
 constexpr std::size_t kGrblHalWindow = 900;
-/// More turns than any controller needs at one instant.
-constexpr int kMostTurnsAtOnce = 100'000;
 
 std::size_t window_of(vocabulary::Firmware firmware) {
   return firmware == vocabulary::Firmware::GrblHal ? kGrblHalWindow : kWindow;
@@ -128,13 +127,11 @@ class TraceRun {
   }
 
   MotionTrace run() {
-    int turns = 0;
+    Standstill standstill;
     feed();
     for (;;) {
       const Instant next = next_instant();
-      if (next == kNever) break;
-      turns = next > now_ ? 0 : turns + 1;
-      if (turns > kMostTurnsAtOnce) break;
+      if (next == kNever || standstill.lasts(controller_, trace_.lines_answered)) break;
       sample_before(next);
       now_ = std::max(now_, next);
       controller_.advance_to(now_);

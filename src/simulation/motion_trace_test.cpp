@@ -59,8 +59,10 @@ TEST(MotionTrace, RabbitDoesNotStopForAnEmptyDwell) {
 }
 
 TEST(MotionTrace, ALengthBeyondTheStepCounterEnds) {
-  const MotionTrace trace = trace_program({.program = "G1X16777217F1000\n"}, machine_of(Firmware::Grbl));
-  EXPECT_EQ(trace.lines_answered, 1U);
+  for (const Firmware firmware : {Firmware::Grbl, Firmware::GrblHal, Firmware::Rabbit}) {
+    const MotionTrace trace = trace_program({.program = "G1X16777217F1000\n"}, machine_of(firmware));
+    EXPECT_EQ(trace.lines_answered, 1U);
+  }
 }
 
 TEST(MotionTrace, RefusedLinesAndThoseNeverAnswered) {

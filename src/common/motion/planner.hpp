@@ -81,6 +81,9 @@ class Planner {
   /// Drops all blocks and forgets the previous direction (firmware's reset); position and overrides stay.
   void clear();
 
+  /// Takes the oldest block out, as its last segment does; for those who plan without moving.
+  void discard_front();
+
   /// Takes over changed `$` settings for lines planned from now on. `planner_blocks` only counts at construction.
   void set_settings(const MotionSettings& settings);
   [[nodiscard]] const MotionSettings& settings() const { return settings_; }
@@ -116,7 +119,6 @@ class Planner {
   [[nodiscard]] PlannedBlock& front() { return ring_[slot(tail_)]; }
   [[nodiscard]] PlannedBlock& system_block() { return ring_[slot(head_)]; }
   [[nodiscard]] float exit_speed_sqr() const;
-  void discard_front();
   void reread_preparing_block();
 
   MotionRules rules_;

@@ -29,7 +29,7 @@ SegmentPreparer::SegmentPreparer(Planner& planner, const MotionRules& rules) : p
 }
 
 void SegmentPreparer::run() {
-  holding_ = false;
+  stuck_ = holding_ = false;
   system_motion_ = false;
   motion_ended_ = false;
 }
@@ -37,7 +37,7 @@ void SegmentPreparer::run() {
 void SegmentPreparer::begin_hold() {
   planner_.reread_preparing_block();
   holding_ = true;
-  motion_ended_ = false;
+  stuck_ = motion_ended_ = false;
 }
 
 void SegmentPreparer::begin_hold_at(float speed) {
@@ -87,6 +87,7 @@ void SegmentPreparer::reset() {
 }
 
 bool SegmentPreparer::has_work() const {
+  if (stuck_ && planner_.preparing_ != nullptr) return false;
   return !motion_ended_ && (system_motion_ || planner_.preparing_ != nullptr || !planner_.is_empty());
 }
 
@@ -109,7 +110,14 @@ std::optional<Segment> SegmentPreparer::next() {
     }
   }
   PlannedBlock& block = *planner_.preparing_;
-  return segment_from(block, wide ? walk_ramps<double>(block) : walk_ramps<float>(block));
+  const Ramp ramp_before = ramp_;
+  const float speed_before = planner_.prepared_speed_;
+  const Walk walk = wide ? walk_ramps<double>(block) : walk_ramps<float>(block);
+  const bool changes =
+      walk.remaining_mm != block.millimeters || planner_.prepared_speed_ != speed_before || ramp_ != ramp_before;
+  const auto segment = segment_from(block, walk);
+  stuck_ = !changes && segment && segment->ticks == 0;
+  return segment;
 }
 
 void SegmentPreparer::load_steps(const PlannedBlock& block) {

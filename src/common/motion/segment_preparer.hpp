@@ -118,6 +118,9 @@ class SegmentPreparer {
   bool keeps_block_ = false;
   bool next_block_keeps_decelerating_ = false;
   bool block_is_partial_ = false;
+  /// The last segment had no step and left everything as it was, as all after it would: a distance so long that 32 bits
+  /// lose what a segment takes off it.
+  bool stuck_ = false;
 
   /// Step bookkeeping of the block in preparation.
   struct Steps {
