@@ -83,6 +83,8 @@ std::optional<std::vector<NamedTalk>> load_talks(const VerifyOptions& options) {
 /// Why real firmware cannot hold this talk; empty if it can.
 std::string obstacle(const Talk& talk) {
   if (talk.virtual_only_because) return "virtual only: " + *talk.virtual_only_because;
+  if (talk.has_card) return "it needs a card with certain files";
+  if (talk.has_pendant) return "somebody would have to work the pendant";
   if (talk.moves_switches()) return "somebody would have to press switches";
   return {};
 }

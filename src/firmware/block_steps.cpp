@@ -82,7 +82,7 @@ class BlockSteps {
   void operator()(const gcode::ToolSelect& select) { steps_.emplace_back(Perform{.action = select}); }
   void operator()(const gcode::ToolChange&) { steps_.insert(steps_.end(), {Synchronize{}, EnterToolChange{}}); }
   void operator()(const gcode::ProgramPause&) { steps_.insert(steps_.end(), {Synchronize{}, HoldForCycleStart{}}); }
-  void operator()(const gcode::ProgramDemarcation&) {}
+  void operator()(const gcode::ProgramDemarcation& mark) { steps_.emplace_back(Perform{.action = mark}); }
   void operator()(const gcode::OperatorMessage& message) {
     if (has_motion_ && board_.state != MachineState::Check) {
       board_.motion_messages.push_back({.block = board_.blocks_planned + 1, .text = message.text});

@@ -81,6 +81,7 @@ Board::Board(const Personality& owner, StoredState memory, Equipment fitted)
       equipment(std::move(fitted)),
       slot{.card = equipment.card},
       block_targets_mm(kMostBlocks) {
+  if (equipment.pendant) outbox.fit_pendant();
   apply_settings();
   load_offsets();
 }

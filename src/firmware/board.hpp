@@ -115,6 +115,10 @@ struct Board {
   bool hold_complete = false;
   /// Nothing but a reset helps.
   bool critical = false;
+  /// The pendant is in command (grblHAL sys.mpg_mode).
+  bool pendant_commands = false;
+  /// Between two `%` (grblHAL gc_state.file_run).
+  bool in_demarcated_program = false;
   bool probing = false;
   bool auto_reporting = false;
   bool tool_acknowledged = false;

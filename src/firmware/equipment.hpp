@@ -11,6 +11,8 @@ namespace kerf::firmware {
 struct Equipment {
   /// A slot with this card in it; null: no file system.
   std::shared_ptr<Card> card{};
+  /// A second stream that a pendant may take over.
+  bool pendant = false;
 };
 
 }  // namespace kerf::firmware

@@ -50,6 +50,7 @@ bool Foreground::operator()(Restart& /*step*/) {
   board_.switches = {};
   board_.probing = false;
   board_.critical = false;
+  board_.in_demarcated_program = false;
   board_.tool_acknowledged = false;
   board_.hold_complete = false;
   cycle_.kill();
@@ -88,6 +89,10 @@ bool Foreground::operator()(CheckAtStart& /*step*/) {
     check_at_start_grbl();
   }
   board_.cold_start = false;
+  // grblHAL grbllib.c: whoever can hand over command tells who has it.
+  if (board_.equipment.pendant && (board_.pendant_commands || !board_.auto_reporting)) {
+    request_status(board_.pendant_commands);
+  }
   return true;
 }
 

@@ -158,7 +158,9 @@ bool Foreground::operator()(Perform& step) {
                    board_.overrides.feed_hold_acts = control.feed_hold_enabled;
                    board_.apply_overrides();
                  },
+                 [&](const gcode::ProgramDemarcation&) { board_.in_demarcated_program ^= true; },
                  [&](const gcode::ProgramEnd& end) {
+                   board_.in_demarcated_program = false;
                    wanted = {};
                    if (!checks_only) {
                      note_work_offset();

@@ -19,25 +19,25 @@ Receiver::Fate Receiver::take(std::uint8_t byte, LineContext context) {
   if (byte == kDelete && personality_.drops_delete && !context.keeps_high_bytes) return Fate::Lost;
   const bool is_realtime = !is_text && vocabulary::is_realtime(personality_.dialect(), byte);
   if (is_realtime && !(full() && personality_.full_buffer_drops_realtime)) return Fate::Realtime;
-  if (is_realtime || context.drops_text || !ring_.push_back(static_cast<char>(byte))) return Fate::Lost;
+  if (is_realtime || context.drops_text || !ring().push_back(static_cast<char>(byte))) return Fate::Lost;
   return Fate::Buffered;
 }
 
 void Receiver::cancel() {
-  ring_.clear();
-  static_cast<void>(ring_.push_back(kCancelMark));
+  ring().clear();
+  static_cast<void>(ring().push_back(kCancelMark));
 }
 
 void Receiver::set_aside() {
   std::string bytes;
-  while (!ring_.empty()) bytes += ring_.pop_front();
+  while (!ring().empty()) bytes += ring().pop_front();
   aside_ = std::move(bytes);
 }
 
 void Receiver::restore() {
   if (!aside_) return;
-  ring_.clear();
-  for (const char byte : *aside_) static_cast<void>(ring_.push_back(byte));
+  ring().clear();
+  for (const char byte : *aside_) static_cast<void>(ring().push_back(byte));
   aside_.reset();
 }
 

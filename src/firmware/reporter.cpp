@@ -53,6 +53,18 @@ std::vector<std::string> parser_state_words(const Board& board) {
   return {parts.begin(), parts.end()};
 }
 
+constexpr std::array kReportFlags = {&ReportDebts::work_offset,
+                                     &ReportDebts::work_coordinate_system,
+                                     &ReportDebts::overrides,
+                                     &ReportDebts::accessories,
+                                     &ReportDebts::scaling,
+                                     &ReportDebts::mpg,
+                                     &ReportDebts::homed,
+                                     &ReportDebts::tool,
+                                     &ReportDebts::tool_reference,
+                                     &ReportDebts::tool_offset,
+                                     &ReportDebts::cycle_start_pressed};
+
 bool is_grblhal_like(const Board& board) {
   return board.personality.status.counts_changes;
 }
@@ -83,6 +95,7 @@ std::vector<double> Reporter::in_report_units(const AxisValues& mm) const {
 void Reporter::say_status(std::size_t rx_free) {
   const bool pushes_parser_state = is_grblhal_like(board_) && board_.reports(ReportBit::ParserState);
   const bool owes_tool_offset = board_.report.tool_offset;
+  if (board_.equipment.pendant) owe_pendant();
   board_.say(status(rx_free));
   if (!pushes_parser_state) return;
   say_changed_parser_state();
@@ -104,6 +117,7 @@ void Reporter::say_changed_parser_state() {
     return;
   }
   say_parser_state();
+  if (board_.equipment.pendant && !board_.pendant_commands) say_parser_state(Port::Pendant);
 }
 
 StatusReport Reporter::status(std::size_t rx_free) {
@@ -285,8 +299,8 @@ void Reporter::add_changed(StatusReport& report) const {
     report.scaled_axes = std::move(axes);
   }
   const auto interval = static_cast<int>(board_.settings.number(setting::kAutoReport));
-  if (all && interval > 0) report.auto_report_ms = board_.auto_reporting ? interval : 0;
-  if (all || debts.mpg) report.mpg = false;
+  if ((all || debts.mpg) && interval > 0) report.auto_report_ms = board_.auto_reporting ? interval : 0;
+  if (all || debts.mpg) report.mpg = board_.pendant_commands;
   const AxisMask homing = board_.homing_axes();
   const bool single = board_.settings.flag(setting::kHoming, homing_bit::kSingleAxis);
   if ((all || debts.homed) && (homing != 0 || single)) {
@@ -318,6 +332,29 @@ void Reporter::add_card(StatusReport& report, bool everything) {
 
 void Reporter::say_parser_state() {
   board_.say(protocol::ParserState{.words = parser_state_words(board_)});
+}
+
+void Reporter::say_parser_state(Port port) {
+  board_.outbox.say_to(port, protocol::ParserState{.words = parser_state_words(board_)});
+}
+
+void Reporter::owe_pendant() {
+  for (const auto flag : kReportFlags) {
+    pendant_debts_.*flag = pendant_debts_.*flag || (board_.report.*flag && !(told_pendant_.*flag));
+  }
+  told_pendant_ = {};
+}
+
+void Reporter::say_status_to_pendant(std::size_t rx_free, bool everything) {
+  const ReportDebts debts = board_.report;
+  owe_pendant();
+  told_pendant_ = debts;
+  board_.report = pendant_debts_;
+  board_.report.everything = everything;
+  const StatusReport report = status(rx_free);
+  pendant_debts_ = board_.report;
+  board_.report = debts;
+  board_.outbox.say_to(Port::Pendant, report);
 }
 
 void Reporter::say_tool_length_offset() {

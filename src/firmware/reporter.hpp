@@ -18,8 +18,12 @@ class Reporter {
 
   /// Says `<...>`, and on grblHAL with `$10` bit 9 the parser state behind it when it has changed.
   void say_status(std::size_t rx_free);
+  /// A report that only the pendant asked for; it has debts and counters of its own (grblHAL stream.c).
+  void say_status_to_pendant(std::size_t rx_free, bool everything);
+  void restart_pendant_counters() { pendant_debts_.override_counter = pendant_debts_.work_offset_counter = 0; }
   /// `[GC:...]`
   void say_parser_state();
+  void say_parser_state(Port port);
   /// `[TLO:...]`
   void say_tool_length_offset();
   /// `[PRB:...]`
@@ -45,7 +49,13 @@ class Reporter {
   [[nodiscard]] std::vector<double> in_report_units(const AxisValues& mm) const;
   [[nodiscard]] bool is_busy() const;
 
+  /// The pendant is owed what the others are told from now on.
+  void owe_pendant();
+
   Board& board_;
+  ReportDebts pendant_debts_;
+  /// What of the board's debts the pendant has been told already.
+  ReportDebts told_pendant_;
   /// What the last pushed parser state said.
   struct TrackedValues {
     float feed_rate = 0;

@@ -7,6 +7,7 @@
 #include "firmware/board.hpp"
 #include "firmware/cycle.hpp"
 #include "firmware/foreground.hpp"
+#include "firmware/pendant.hpp"
 #include "firmware/realtime.hpp"
 #include "firmware/receiver.hpp"
 #include "firmware/reporter.hpp"
@@ -21,9 +22,12 @@ struct VirtualController::Parts {
         cycle(board),
         reporter(board),
         foreground(board, cycle, receiver, reporter),
-        realtime(board, cycle, foreground, receiver, reporter) {}
+        realtime(board, cycle, foreground, receiver, reporter),
+        pendant(board, receiver, reporter, foreground) {}
 
-  [[nodiscard]] Instant next_deadline() const { return std::min(cycle.next_deadline(), foreground.next_deadline()); }
+  [[nodiscard]] Instant next_deadline() const {
+    return std::min({cycle.next_deadline(), foreground.next_deadline(), pendant.next_deadline()});
+  }
 
   /// Motion, then the main loop, at one instant.
   void live_at(Instant at) {
@@ -31,7 +35,27 @@ struct VirtualController::Parts {
     cycle.advance();
     foreground.look_at_switches();
     foreground.settle();
+    pendant.advance();
     is_settled = true;
+  }
+
+  /// One byte of the wire in command.
+  void take(std::uint8_t byte) {
+    if (receiver.full()) foreground.run();
+    const auto fate = receiver.take(byte, foreground.line_context());
+    if (fate == Receiver::Fate::Realtime) return act(byte);
+    // `$39`=0 looks at the line that is being read, byte by byte.
+    if (foreground.waiting_for() == WaitingFor::Nothing && (byte == '$' || byte == '(')) foreground.run();
+  }
+
+  void act(std::uint8_t byte) {
+    foreground.settle();
+    if (board.pendant_commands && byte == static_cast<std::uint8_t>(vocabulary::Realtime::MpgModeToggle)) {
+      pendant.give_back();
+    } else {
+      realtime.act(byte);
+    }
+    foreground.run();
   }
 
   void press(Input input) {
@@ -54,6 +78,7 @@ struct VirtualController::Parts {
   Reporter reporter;
   Foreground foreground;
   Realtime realtime;
+  Pendant pendant;
   /// False while the main loop may still find something to do at `board.now`.
   bool is_settled = true;
 };
@@ -72,20 +97,23 @@ void VirtualController::power_on(Instant now) {
 
 void VirtualController::on_bytes(Instant now, std::string_view bytes) {
   if (now > parts_->board.now) advance_to(now);
+  for (const char byte : bytes) {
+    if (!parts_->board.pendant_commands) parts_->take(static_cast<std::uint8_t>(byte));
+  }
+  parts_->foreground.run();
+  parts_->is_settled = false;
+}
+
+void VirtualController::on_pendant_bytes(Instant now, std::string_view bytes) {
+  if (!parts_->board.equipment.pendant) return;
+  if (now > parts_->board.now) advance_to(now);
   for (const char letter : bytes) {
     const auto byte = static_cast<std::uint8_t>(letter);
-    if (parts_->receiver.full()) parts_->foreground.run();
-    const auto fate = parts_->receiver.take(byte, parts_->foreground.line_context());
-    if (fate != Receiver::Fate::Realtime) {
-      // `$39`=0 looks at the line that is being read, byte by byte.
-      if (parts_->foreground.waiting_for() == WaitingFor::Nothing && (byte == '$' || byte == '(')) {
-        parts_->foreground.run();
-      }
-      continue;
+    if (parts_->board.pendant_commands) {
+      parts_->take(byte);
+    } else if (!parts_->pendant.take_unasked(byte)) {
+      parts_->act(byte);
     }
-    parts_->foreground.settle();
-    parts_->realtime.act(byte);
-    parts_->foreground.run();
   }
   parts_->foreground.run();
   parts_->is_settled = false;
@@ -119,11 +147,15 @@ Instant VirtualController::next_deadline() const {
 }
 
 std::string VirtualController::take_outbox() {
-  return parts_->board.outbox.take();
+  return parts_->board.outbox.take(Port::Main);
+}
+
+std::string VirtualController::take_pendant_outbox() {
+  return parts_->board.outbox.take(Port::Pendant);
 }
 
 std::size_t VirtualController::receive_room() const {
-  return parts_->receiver.free();
+  return parts_->receiver.free(Port::Main);
 }
 
 const StoredState& VirtualController::stored() const {

@@ -34,6 +34,9 @@ class VirtualController {
   void power_on(Instant now);
   /// Bytes arrive at the receiver. A realtime byte acts at once, everything else goes through the receive buffer.
   void on_bytes(Instant now, std::string_view bytes);
+  /// The same from the pendant, where one is fitted. Text counts only while it is in command, and then the main wire is
+  /// deaf.
+  void on_pendant_bytes(Instant now, std::string_view bytes);
   /// Something happens to the machine.
   void submit(Instant now, const WorkcellEvent& event);
   /// Lets time pass up to `now`.
@@ -42,8 +45,10 @@ class VirtualController {
   [[nodiscard]] Instant next_deadline() const;
   /// Everything that was sent since the last call, in order.
   [[nodiscard]] std::string take_outbox();
+  [[nodiscard]] std::string take_pendant_outbox();
 
-  /// Bytes that fit into the receive buffer without loss; a link with back-pressure (TCP) hands over no more than this.
+  /// Bytes that fit into the receive buffer of the main wire without loss; a link with back-pressure (TCP) hands over
+  /// no more than this.
   [[nodiscard]] std::size_t receive_room() const;
   [[nodiscard]] const StoredState& stored() const;
   /// Increases whenever `stored()` changes, so that an owner knows when to save it.

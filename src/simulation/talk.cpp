@@ -90,15 +90,20 @@ std::optional<WorkcellEvent> switch_of(std::string_view text) {
 using ParsedAction = std::expected<decltype(TalkStep::action), TalkFault>;
 
 ParsedAction send_text(std::string_view text) {
-  if (text == "?" || text == "!" || text == "~") return SendBytes{std::string(text)};
-  if (is_only_hex_escapes(text)) return SendBytes{base::unescape(text).value_or("")};
-  return SendBytes{std::string(text) + "\n"};
+  if (text == "?" || text == "!" || text == "~") return SendBytes{.bytes = std::string(text)};
+  if (is_only_hex_escapes(text)) return SendBytes{.bytes = base::unescape(text).value_or("")};
+  return SendBytes{.bytes = std::string(text) + "\n"};
 }
 
 ParsedAction send_raw(std::string_view text) {
   auto bytes = base::unescape(text);
   if (!bytes) return std::unexpected(TalkFault::BadEscape);
-  return SendBytes{*std::move(bytes)};
+  return SendBytes{.bytes = *std::move(bytes)};
+}
+
+ParsedAction to_pendant(ParsedAction action) {
+  if (action) std::get<SendBytes>(*action).port = firmware::Port::Pendant;
+  return action;
 }
 
 ParsedAction at(std::string_view text) {
@@ -121,7 +126,9 @@ ParsedAction parse_step(std::string_view line) {
   const std::string_view text = line.size() > 2 ? line.substr(3) : std::string_view{};
   if (mark == "->") return send_text(text);
   if (mark == "=>") return send_raw(text);
-  if (mark == "<-") return ExpectLine{LinePattern(std::string(text))};
+  if (mark == "P>") return to_pendant(send_text(text));
+  if (mark == "<P") return ExpectLine{.pattern = LinePattern(std::string(text)), .port = firmware::Port::Pendant};
+  if (mark == "<-") return ExpectLine{.pattern = LinePattern(std::string(text))};
   if (mark == "<~") return AllowLines{LinePattern(std::string(text))};
   if (mark == "<!") return ForbidLines{LinePattern(std::string(text))};
   return std::unexpected(TalkFault::UnknownMark);
@@ -142,6 +149,8 @@ std::expected<void, TalkFault> read_header(Talk& talk, std::string_view text) {
     talk.settings.emplace_back(value);
   } else if (parts[0] == "power-up") {
     talk.begins_at_power_up = true;
+  } else if (parts[0] == "pendant") {
+    talk.has_pendant = true;
   } else if (parts[0] == "card") {
     talk.has_card = true;
   } else if (parts[0] == "file") {
@@ -213,10 +222,10 @@ std::expected<Talk, TalkSyntaxError> parse_talk(std::string_view text, std::stri
 std::string_view explain(TalkFault fault) {
   switch (fault) {
     case TalkFault::UnknownMark:
-      return "a line begins with '->', '=>', '<-', '<~', '<!', '@', '%' or '#', then one space";
+      return "a line begins with '->', '=>', '<-', '<~', '<!', 'P>', '<P', '@', '%' or '#', then one space";
     case TalkFault::BadCount: return "this header wants a whole number";
     case TalkFault::UnknownHeader:
-      return "this header is none of personality, axes, tools, setting, power-up, card, file and virtual-only";
+      return "this header is none of personality, axes, tools, setting, power-up, card, file, pendant and virtual-only";
     case TalkFault::HeaderAfterStep: return "headers stand before the first step";
     case TalkFault::UnknownPersonality:
       return "nobody knows who speaks: add '% personality grbl', 'rabbit' or 'grblhal'";

@@ -12,6 +12,7 @@
 #include "common/base/time.hpp"
 #include "common/vocabulary/firmware.hpp"
 #include "firmware/personality.hpp"
+#include "firmware/port.hpp"
 #include "firmware/workcell.hpp"
 
 namespace kerf::simulation {
@@ -29,9 +30,12 @@ class LinePattern {
 
 struct SendBytes {
   std::string bytes;
+  firmware::Port port = firmware::Port::Main;
 };
 struct ExpectLine {
   LinePattern pattern;
+  /// On the pendant lines that do not match are passed over.
+  firmware::Port port = firmware::Port::Main;
 };
 struct AllowLines {
   LinePattern pattern;
@@ -66,6 +70,8 @@ struct Talk {
   bool begins_at_power_up = false;
   /// The machine has a card slot with a card in it, and these files on the card.
   bool has_card = false;
+  /// It has a second stream with a pendant on it.
+  bool has_pendant = false;
   struct CardFile {
     std::string path;
     std::string contents;

@@ -30,6 +30,21 @@ constexpr Duration kEnding = 300ms;
 
 constexpr std::string_view kSoftReset = "\x18";
 
+/// The lines that end in `bytes`, without empty ones; what is left stays in `partial`.
+std::vector<std::string> whole_lines(std::string& partial, std::string_view bytes) {
+  std::vector<std::string> lines;
+  for (const char byte : bytes) {
+    if (byte != '\n') {
+      partial += byte;
+      continue;
+    }
+    if (partial.ends_with('\r')) partial.pop_back();
+    if (!partial.empty()) lines.push_back(partial);
+    partial.clear();
+  }
+  return lines;
+}
+
 bool is_welcome(const std::string& line) {
   return std::holds_alternative<protocol::Welcome>(protocol::decode(line));
 }
@@ -40,17 +55,17 @@ TalkConversation::TalkConversation(const Talk& talk, Instant now)
     : talk_(talk), began_(now), deadline_(now + kListening) {}
 
 void TalkConversation::on_bytes(Instant now, std::string_view bytes) {
-  for (const char byte : bytes) {
-    if (byte != '\n') {
-      partial_line_ += byte;
-      continue;
-    }
-    if (partial_line_.ends_with('\r')) partial_line_.pop_back();
-    if (!partial_line_.empty()) {
-      note(now, "<-", partial_line_);
-      lines_.push_back(partial_line_);
-    }
-    partial_line_.clear();
+  for (std::string& line : whole_lines(partial_line_, bytes)) {
+    note(now, "<-", line);
+    lines_.push_back(std::move(line));
+  }
+  advance_to(now);
+}
+
+void TalkConversation::on_pendant_bytes(Instant now, std::string_view bytes) {
+  for (std::string& line : whole_lines(partial_pendant_line_, bytes)) {
+    note(now, "<P", line);
+    pendant_lines_.push_back(std::move(line));
   }
   advance_to(now);
 }
@@ -154,17 +169,38 @@ void TalkConversation::run_step(Instant now) {
 
 void TalkConversation::run(Instant now, const SendBytes& send) {
   withdraw_allowances();
-  say(now, send.bytes);
+  if (send.port == firmware::Port::Pendant) {
+    pendant_lines_.clear();
+    note(now, "P>", base::escape(send.bytes));
+    outbox_.pendant_bytes += send.bytes;
+    must_yield_ = true;
+  } else {
+    say(now, send.bytes);
+  }
   step_done(now);
 }
 
+void TalkConversation::run_on_pendant(Instant now, const ExpectLine& expect) {
+  while (!pendant_lines_.empty()) {
+    const std::string line = std::move(pendant_lines_.front());
+    pendant_lines_.pop_front();
+    if (expect.pattern.matches(line)) return step_done(now);
+  }
+  await_line(now);
+}
+
 void TalkConversation::run(Instant now, const ExpectLine& expect) {
+  if (expect.port == firmware::Port::Pendant) return run_on_pendant(now, expect);
   while (!lines_.empty()) {
     const std::string line = std::move(lines_.front());
     lines_.pop_front();
     if (expect.pattern.matches(line)) return step_done(now);
     if (!is_allowed(line)) return fail("'" + line + "' came");
   }
+  await_line(now);
+}
+
+void TalkConversation::await_line(Instant now) {
   if (!step_limit_) step_limit_ = now + kLineLimit;
   deadline_ = *step_limit_;
   if (now >= deadline_) fail("nothing came");

@@ -23,8 +23,9 @@ struct TalkFailure {
 
 struct TalkOutbox {
   std::string bytes;
+  std::string pendant_bytes;
   std::vector<firmware::WorkcellEvent> events;
-  [[nodiscard]] bool is_empty() const { return bytes.empty() && events.empty(); }
+  [[nodiscard]] bool is_empty() const { return bytes.empty() && pendant_bytes.empty() && events.empty(); }
 };
 
 /// One run of one talk. `talk` outlives it. After take_outbox() returned something, deliver it and call advance_to()
@@ -34,6 +35,8 @@ class TalkConversation {
   TalkConversation(const Talk& talk, Instant now);
 
   void on_bytes(Instant now, std::string_view bytes);
+  /// What the pendant hears.
+  void on_pendant_bytes(Instant now, std::string_view bytes);
   /// The link is gone: the talk has failed unless it was over.
   void on_closed();
   void advance_to(Instant now);
@@ -58,6 +61,7 @@ class TalkConversation {
   void run_step(Instant now);
   void run(Instant now, const SendBytes& send);
   void run(Instant now, const ExpectLine& expect);
+  void run_on_pendant(Instant now, const ExpectLine& expect);
   void run(Instant now, const AllowLines& allow);
   void run(Instant now, const ForbidLines& forbid);
   void run(Instant now, const LetTimePass& pass);
@@ -66,6 +70,7 @@ class TalkConversation {
   void step_done(Instant now);
   void finish(Instant now);
   void fail(std::string what);
+  void await_line(Instant now);
   void say(Instant now, std::string_view bytes);
   void note(Instant now, std::string_view direction, std::string_view text);
   void withdraw_allowances();
@@ -81,6 +86,8 @@ class TalkConversation {
 
   std::string partial_line_;
   std::deque<std::string> lines_;
+  std::string partial_pendant_line_;
+  std::deque<std::string> pendant_lines_;
   std::vector<const LinePattern*> allowed_;
 
   std::size_t setting_ = 0;

@@ -16,15 +16,18 @@ constexpr int kMostTurnsAtOnce = 100'000;
 bool deliver(Instant now, TalkConversation& conversation, firmware::VirtualController& controller) {
   const std::string heard = controller.take_outbox();
   if (!heard.empty()) conversation.on_bytes(now, heard);
+  const std::string heard_on_pendant = controller.take_pendant_outbox();
+  if (!heard_on_pendant.empty()) conversation.on_pendant_bytes(now, heard_on_pendant);
   conversation.advance_to(now);
   const TalkOutbox said = conversation.take_outbox();
   for (const auto& event : said.events) controller.submit(now, event);
   if (!said.bytes.empty()) controller.on_bytes(now, said.bytes);
-  return !heard.empty() || !said.is_empty();
+  if (!said.pendant_bytes.empty()) controller.on_pendant_bytes(now, said.pendant_bytes);
+  return !heard.empty() || !heard_on_pendant.empty() || !said.is_empty();
 }
 
 firmware::Equipment equipment_of(const Talk& talk) {
-  firmware::Equipment equipment;
+  firmware::Equipment equipment = {.pendant = talk.has_pendant};
   if (!talk.has_card) return equipment;
   const auto card = std::make_shared<firmware::MemoryCard>();
   for (const auto& file : talk.card_files) card->put(file.path, file.contents);
