@@ -27,6 +27,7 @@ struct VirtualOptions {
   std::string settings_file;
   std::string state_file;
   std::string card_folder;
+  std::string pendant;
 };
 [[nodiscard]] ExitStatus serve_virtual(const VirtualOptions& options);
 

@@ -78,6 +78,11 @@ void add_virtual(CLI::App& kerf, Chosen& chosen) {
       ->add_option("--card", options->card_folder,
                    "The machine has an SD card: this folder; it takes $FM, $F and runs files (grblhal)")
       ->type_name("FOLDER");
+  command
+      ->add_option(
+          "--pendant", options->pendant,
+          "Serve a pendant (MPG) there, beside the sender: tcp://127.0.0.1:5002 or pty:///tmp/pendant (grblhal)")
+      ->type_name("URL");
   command->footer(
       "\nAny sender can connect, for example: kerf run examples/coaster.nc --machine 127.0.0.1:5001\n"
       "One TCP client at a time; a second one is turned away while the first is connected.\n");

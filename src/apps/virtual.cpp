@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -75,11 +76,14 @@ OrComplained<StoredState> stored_state_for(const VirtualOptions& options) {
 /// What the options plug into the machine.
 OrComplained<firmware::Equipment> equipment_for(const VirtualOptions& options, vocabulary::Firmware personality) {
   firmware::Equipment equipment;
-  if (options.card_folder.empty()) return equipment;
-  if (!firmware::personality_of(personality).has_plugins) {
+  equipment.pendant = !options.pendant.empty();
+  const bool wants_any = equipment.pendant || !options.card_folder.empty();
+  if (wants_any && !firmware::personality_of(personality).has_plugins) {
     return said(
-        fmt::format("{} has no card slot: leave --card out, or choose --personality grblhal.", name_of(personality)));
+        fmt::format("{} has {}, or choose --personality grblhal.", name_of(personality),
+                    equipment.pendant ? "no second stream: leave --pendant out" : "no card slot: leave --card out"));
   }
+  if (options.card_folder.empty()) return equipment;
   std::error_code fault;
   if (!std::filesystem::is_directory(options.card_folder, fault)) {
     return said(
@@ -89,40 +93,89 @@ OrComplained<firmware::Equipment> equipment_for(const VirtualOptions& options, v
   return equipment;
 }
 
+/// The terminal that `pty:///tmp/x` or `pty:/tmp/x` names.
+std::optional<std::string> pty_path_of(std::string_view url) {
+  constexpr std::string_view kScheme = "pty:";
+  if (!url.starts_with(kScheme)) return std::nullopt;
+  url.remove_prefix(kScheme.size());
+  if (url.starts_with("//")) url.remove_prefix(2);
+  return std::string{url};
+}
+
+/// A place where one wire of the controller can be reached: a TCP port, a pseudo-terminal, or both.
+class WireServer {
+ public:
+  WireServer(io::EventLoop& loop, std::string_view who, std::function<void(std::string_view)> received)
+      : tcp_(loop, {.received = received,
+                    .connected = [](std::string_view peer) { tell(fmt::format("{} connected.", peer)); },
+                    .disconnected = [](std::string_view peer) { tell(fmt::format("{} went away.", peer)); },
+                    .turned_away =
+                        [who](std::string_view peer) {
+                          tell(fmt::format("{} was turned away: another {} is connected.", peer, who));
+                        }}),
+        pty_(loop, received) {}
+
+  OrComplained<std::string> listen(const io::TcpAddress& address) {
+    const auto listening = tcp_.listen(address);
+    if (!listening) return said(io::explain(listening.error(), io::to_string(address)));
+    return io::to_string(*listening);
+  }
+
+  OrComplained<std::string> open(const std::string& path) {
+    const auto opened = pty_.open(path);
+    if (!opened) return said(io::explain(opened.error(), path));
+    return path;
+  }
+
+  void write(std::string_view bytes) {
+    tcp_.write(bytes);
+    pty_.write(bytes);
+  }
+
+ private:
+  static void tell(std::string_view sentence) {
+    put("{}\n", sentence);
+    std::fflush(stdout);
+  }
+
+  io::TcpServer tcp_;
+  io::PtyServer pty_;
+};
+
 /// Everything that serves one controller. Lives on the event loop's thread.
 class VirtualMachine {
  public:
   VirtualMachine(io::EventLoop& loop, firmware::VirtualController controller, io::Speed speed, std::string state_file)
       : state_file_(std::move(state_file)),
         host_(loop, std::move(controller), speed),
-        tcp_(loop, {.received = [this](std::string_view bytes) { host_.receive(bytes); },
-                    .connected = [](std::string_view peer) { say(fmt::format("{} connected.", peer)); },
-                    .disconnected = [](std::string_view peer) { say(fmt::format("{} went away.", peer)); },
-                    .turned_away =
-                        [](std::string_view peer) {
-                          say(fmt::format("{} was turned away: another sender is connected.", peer));
-                        }}),
-        pty_(loop, [this](std::string_view bytes) { host_.receive(bytes); }) {
-    host_.on_output([this](std::string_view bytes) {
-      tcp_.write(bytes);
-      pty_.write(bytes);
-    });
+        sender_(loop, "sender", [this](std::string_view bytes) { host_.receive(bytes); }),
+        pendant_(loop, "pendant", [this](std::string_view bytes) { host_.receive_from_pendant(bytes); }) {
+    host_.on_output([this](std::string_view bytes) { sender_.write(bytes); });
+    host_.on_pendant_output([this](std::string_view bytes) { pendant_.write(bytes); });
     host_.on_stored([this](const StoredState& state) { save(state); });
   }
 
   OrComplained<std::vector<std::string>> open(const std::optional<io::TcpAddress>& address, const std::string& pty) {
     std::vector<std::string> places;
     if (address) {
-      const auto listening = tcp_.listen(*address);
-      if (!listening) return said(io::explain(listening.error(), io::to_string(*address)));
-      places.push_back(io::to_string(*listening));
+      auto place = sender_.listen(*address);
+      if (!place) return std::unexpected(place.error());
+      places.push_back(*std::move(place));
     }
     if (!pty.empty()) {
-      const auto opened = pty_.open(pty);
-      if (!opened) return said(io::explain(opened.error(), pty));
-      places.push_back(pty);
+      auto place = sender_.open(pty);
+      if (!place) return std::unexpected(place.error());
+      places.push_back(*std::move(place));
     }
     return places;
+  }
+
+  /// `url` is an address to listen at, or a `pty:` with the name of a terminal.
+  OrComplained<std::string> open_pendant(const std::string& url) {
+    if (const auto path = pty_path_of(url)) return pendant_.open(*path);
+    const auto address = io::parse_listen_url(url);
+    if (!address) return said(io::explain(address.error()));
+    return pendant_.listen(*address);
   }
 
   void power_on() {
@@ -131,11 +184,6 @@ class VirtualMachine {
   }
 
  private:
-  static void say(std::string_view sentence) {
-    put("{}\n", sentence);
-    std::fflush(stdout);
-  }
-
   void save(const StoredState& state) {
     if (state_file_.empty()) return;
     const auto saved = io::replace_text_file(state_file_, firmware::print(state));
@@ -144,8 +192,8 @@ class VirtualMachine {
 
   const std::string state_file_;
   io::ControllerHost host_;
-  io::TcpServer tcp_;
-  io::PtyServer pty_;
+  WireServer sender_;
+  WireServer pendant_;
 };
 
 std::string pace_text(const io::Speed& speed) {
@@ -168,13 +216,19 @@ ExitStatus serve(const VirtualOptions& options, vocabulary::Firmware personality
   }
   io::EventLoop loop;
   VirtualMachine machine(loop, std::move(controller), speed, options.state_file);
-  const auto places = machine.open(address, options.pty);
+  auto places = machine.open(address, options.pty);
   if (!places) return ExitStatus::Usage;
+  const std::string first_place = places->front();
+  if (!options.pendant.empty()) {
+    const auto place = machine.open_pendant(options.pendant);
+    if (!place) return ExitStatus::Usage;
+    places->back() += fmt::format(", its pendant at {}", *place);
+  }
   constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
   const io::SignalWatch signals(loop, kSignals, [&](int) { loop.stop(); });
   machine.power_on();
   put("A virtual {} runs {} at {}.\nTry: kerf run examples/coaster.nc --machine {}\nCtrl-C ends it.\n",
-      name_of(personality), pace_text(speed), fmt::join(*places, " and "), places->front());
+      name_of(personality), pace_text(speed), fmt::join(*places, " and "), first_place);
   std::fflush(stdout);
   loop.run();
   return ExitStatus::Done;

@@ -45,6 +45,15 @@ void ControllerHost::receive(std::string_view bytes) {
   settle();
 }
 
+void ControllerHost::receive_from_pendant(std::string_view bytes) {
+  last_input_ = loop_.now();
+  patient_until_ = last_input_;
+  const Instant now = virtual_now();
+  controller_.advance_to(now);
+  controller_.on_pendant_bytes(now, bytes);
+  settle();
+}
+
 Instant ControllerHost::virtual_now() const {
   const Duration real = loop_.now() - real_began_;
   return virtual_began_ + base::from_seconds(base::to_seconds(real) * speed_.factor.value_or(1.0));
@@ -65,17 +74,24 @@ bool ControllerHost::may_jump() const {
 
 void ControllerHost::jump() {
   const Instant turn_ends = loop_.now() + kTurn;
-  std::string sent;
-  while (sent.empty() && may_jump() && loop_.now() < turn_ends) {
+  bool has_said = false;
+  while (!has_said && may_jump() && loop_.now() < turn_ends) {
     const Instant deadline = std::max(controller_.next_deadline(), virtual_now());
     controller_.advance_to(deadline);
     real_began_ = loop_.now();
     virtual_began_ = deadline;
-    sent = controller_.take_outbox();
+    has_said = hand_over_output();
   }
-  if (sent.empty()) return;
+}
+
+bool ControllerHost::hand_over_output() {
+  const std::string sent = controller_.take_outbox();
+  const std::string to_pendant = controller_.take_pendant_outbox();
+  if (sent.empty() && to_pendant.empty()) return false;
   patient_until_ = loop_.now() + kPeerPatience;
-  if (output_) output_(sent);
+  if (output_ && !sent.empty()) output_(sent);
+  if (pendant_output_ && !to_pendant.empty()) pendant_output_(to_pendant);
+  return true;
 }
 
 void ControllerHost::on_timer() {
@@ -85,11 +101,7 @@ void ControllerHost::on_timer() {
 }
 
 void ControllerHost::settle() {
-  const std::string sent = controller_.take_outbox();
-  if (!sent.empty()) {
-    patient_until_ = loop_.now() + kPeerPatience;
-    if (output_) output_(sent);
-  }
+  static_cast<void>(hand_over_output());
   if (controller_.stored_revision() != saved_revision_) {
     saved_revision_ = controller_.stored_revision();
     if (stored_) stored_(controller_.stored());

@@ -22,11 +22,14 @@ class ControllerHost {
 
   /// What the controller sends. Set it before power_on().
   void on_output(std::function<void(std::string_view)> callback) { output_ = std::move(callback); }
+  /// The same to its pendant.
+  void on_pendant_output(std::function<void(std::string_view)> callback) { pendant_output_ = std::move(callback); }
   /// The non-volatile memory has changed.
   void on_stored(std::function<void(const firmware::StoredState&)> callback) { stored_ = std::move(callback); }
 
   void power_on();
   void receive(std::string_view bytes);
+  void receive_from_pendant(std::string_view bytes);
   [[nodiscard]] const firmware::VirtualController& controller() const { return controller_; }
 
  private:
@@ -35,6 +38,8 @@ class ControllerHost {
   [[nodiscard]] bool may_jump() const;
   void jump();
   void on_timer();
+  /// Hands over what the controller said; true if it said anything.
+  bool hand_over_output();
   /// Hands over output and changed memory, and arms the timer.
   void settle();
   void arm();
@@ -44,6 +49,7 @@ class ControllerHost {
   const Speed speed_;
   Timer timer_;
   std::function<void(std::string_view)> output_;
+  std::function<void(std::string_view)> pendant_output_;
   std::function<void(const firmware::StoredState&)> stored_;
   unsigned saved_revision_ = 0;
   /// The virtual clock read `virtual_began_` when the real one read `real_began_`.

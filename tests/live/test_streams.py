@@ -1,0 +1,94 @@
+"""A folder as the SD card of `kerf virtual`, and a pendant beside the sender."""
+
+import os
+import re
+import tempfile
+import unittest
+
+from kerf_program import USAGE, VirtualMachine, kerf
+from wires import Wire
+
+
+class Card(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def put(self, name, text):
+        with open(os.path.join(self.folder.name, name), "w", encoding="ascii") as file:
+            file.write(text)
+
+    def machine(self):
+        machine = VirtualMachine("grblhal", "--card", self.folder.name)
+        self.addCleanup(machine.end)
+        return machine
+
+    def test_a_file_is_listed_and_run(self):
+        self.put("part.nc", "G91\nG1X5F600\nM30\n")
+        with Wire(self.machine().port) as wire:
+            wire.send(b"$FM\n$F\n")
+            wire.line("ok")
+            self.assertEqual(wire.line("[FILE:"), "[FILE:/part.nc|SIZE:17]")
+            wire.line("ok")
+            wire.send(b"$F=part.nc\n")
+            wire.line("ok")
+            wire.line("[MSG:Pgm End]")
+            wire.line("ok")
+            wire.send(b"?")
+            self.assertIn("MPos:5.000,", wire.line("<"))
+
+    def test_files_put_there_later_are_seen(self):
+        with Wire(self.machine().port) as wire:
+            wire.send(b"$FM\n")
+            wire.line("ok")
+            self.put("late.nc", "G0X1\n")
+            wire.send(b"$F\n")
+            self.assertIn("late.nc", wire.line("[FILE:"))
+            wire.send(b"$FD=late.nc\n")
+            wire.line("ok")
+            wire.line("ok")
+        self.assertEqual(os.listdir(self.folder.name), [])
+
+    def test_only_grblhal_has_a_card(self):
+        for options in (["--card", self.folder.name], ["--pendant", "tcp://127.0.0.1:0"]):
+            result = kerf("virtual", "--personality", "grbl", "--listen", "tcp://127.0.0.1:0", *options)
+            self.assertEqual(result.returncode, USAGE)
+            self.assertIn("grblhal", result.stderr)
+
+    def test_a_missing_folder_is_named(self):
+        result = kerf("virtual", "--listen", "tcp://127.0.0.1:0", "--card", "/nonexistent-card")
+        self.assertEqual(result.returncode, USAGE)
+        self.assertIn("/nonexistent-card", result.stderr)
+
+
+class Pendant(unittest.TestCase):
+    def test_command_goes_to_the_pendant_and_back(self):
+        with VirtualMachine("grblhal", "--pendant", "tcp://127.0.0.1:0") as machine:
+            pendant_port = int(re.search(r"pendant at tcp://127\.0\.0\.1:(\d+)", machine.output)[1])
+            with Wire(machine.port) as sender, Wire(pendant_port) as pendant:
+                pendant.send(b"\x8b")
+                self.assertIn("|MPG:1|", pendant.line("<"))
+                self.assertIn("|MPG:1|", sender.line("<"))
+                sender.send(b"G0X9\n?")
+                self.assertEqual(sender.quiet(), b"")
+                pendant.send(b"$J=G91X1F600\n")
+                pendant.line("ok")
+                pendant.send(b"\x8b")
+                self.assertIn("|MPG:0", sender.line("<"))
+                sender.send(b"G4P0\n")
+                sender.line("ok")
+                sender.send(b"?")
+                self.assertIn("MPos:1.000,", sender.line("<"))
+
+    def test_a_pendant_on_a_terminal(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "pendant")
+            with VirtualMachine("grblhal", "--pendant", "pty://" + path) as machine, Wire(machine.port) as sender:
+                terminal = os.open(path, os.O_RDWR | os.O_NOCTTY)
+                self.addCleanup(os.close, terminal)
+                os.write(terminal, b"\x8b")
+                self.assertIn("|MPG:1|", sender.line("<"))
+
+
+if __name__ == "__main__":
+    unittest.main()
