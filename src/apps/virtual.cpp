@@ -93,7 +93,7 @@ OrComplained<firmware::Equipment> equipment_for(const VirtualOptions& options, v
   return equipment;
 }
 
-/// The terminal that `pty:///tmp/x` or `pty:/tmp/x` names.
+/// The terminal that `pty://PATH` or `pty:PATH` names.
 std::optional<std::string> pty_path_of(std::string_view url) {
   constexpr std::string_view kScheme = "pty:";
   if (!url.starts_with(kScheme)) return std::nullopt;

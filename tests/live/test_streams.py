@@ -5,8 +5,14 @@ import re
 import tempfile
 import unittest
 
-from kerf_program import USAGE, VirtualMachine, kerf
+from kerf_program import USAGE, VirtualMachine, kerf, wait_until
 from wires import Wire
+
+
+def ask(wire):
+    """A status report."""
+    wire.send(b"?")
+    return wire.line("<")
 
 
 class Card(unittest.TestCase):
@@ -75,10 +81,9 @@ class Pendant(unittest.TestCase):
                 pendant.line("ok")
                 pendant.send(b"\x8b")
                 self.assertIn("|MPG:0", sender.line("<"))
+                wait_until(lambda: "MPos:1.000," in ask(sender), what="the jog's end")
                 sender.send(b"G4P0\n")
                 sender.line("ok")
-                sender.send(b"?")
-                self.assertIn("MPos:1.000,", sender.line("<"))
 
     def test_a_pendant_on_a_terminal(self):
         with tempfile.TemporaryDirectory() as folder:
