@@ -56,9 +56,9 @@ class BlockSteps {
     at_mm_ = move.target_mm;
   }
   void operator()(const gcode::Dwell& dwell) {
-    if (dwell.dwell_s == 0 && board_.personality.skips_empty_dwell) return;
-    steps_.insert(steps_.end(),
-                  {Synchronize{}, Dwell{.left = motion::dwell_duration(board_.planner.rules(), dwell.dwell_s)}});
+    const Duration duration = motion::dwell_duration(board_.planner.rules(), dwell.dwell_s);
+    if (duration == Duration::zero() && board_.personality.skips_empty_dwell) return;
+    steps_.insert(steps_.end(), {Synchronize{}, Dwell{.left = duration}});
   }
   void operator()(const gcode::SpindleChange& change) { synchronised(change); }
   void operator()(const gcode::SpindleSpeedChange& change) { synchronised(change); }

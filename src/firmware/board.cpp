@@ -96,6 +96,31 @@ void Board::plan(const AxisValues& target_mm, const gcode::Feed& feed) {
   }
 }
 
+void Board::say(const protocol::Message& message) {
+  // Rabbit tells nothing in brackets below level 3, "Info" (SourceRabbit/RabbitGRBL Report.cpp).
+  constexpr double kTellingLevel = 3.0;
+  const bool may_be_quiet = personality.names_settings && std::holds_alternative<protocol::Feedback>(message);
+  if (may_be_quiet && settings.number("Message/Level") < kTellingLevel) return;
+  outbox.say(message);
+}
+
+Duration Board::switching_pause(const Accessories& wanted, bool coolant_word) const {
+  if (!personality.waits_after_switching) return {};
+  double seconds = 0;
+  // SourceRabbit/RabbitGRBL PWMSpindle.cpp: every change of direction, off being one; a laser never waits.
+  if (wanted.spindle != accessories.spindle && !settings.motion().laser_mode) {
+    const bool off = wanted.spindle == gcode::SpindleDirection::Off;
+    seconds += settings.number(off ? setting::kSpindleDownDelay : setting::kSpindleUpDelay);
+  }
+  // Coolant.cpp: M7 and M8 wait although it is on.
+  if (coolant_word && wanted.flood && (!accessories.flood || !wanted.mist || accessories.mist)) {
+    seconds += settings.number(setting::kFloodDelay);
+  } else if (coolant_word && wanted.mist) {
+    seconds += settings.number(setting::kMistDelay);
+  }
+  return base::from_seconds(seconds);
+}
+
 void Board::say(FeedbackText text) {
   say(protocol::Feedback{.text = std::string{vocabulary::feedback_text(personality.firmware, text)}});
 }

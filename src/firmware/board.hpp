@@ -149,11 +149,13 @@ struct Board {
   void be_busy(int passes) { busy_until = std::max(busy_until, now) + passes * personality.loop.pass; }
   /// Queues one line; the planner must have room.
   void plan(const AxisValues& target_mm, const gcode::Feed& feed);
-  void say(const protocol::Message& message) { outbox.say(message); }
+  void say(const protocol::Message& message);
   void say(vocabulary::FeedbackText text);
   /// State Alarm; false if this alarm was in force already and is not printed again.
   bool raise_alarm(vocabulary::AlarmCode code);
 
+  /// How long the firmware stands still after the outputs were switched from what they were to `wanted`.
+  [[nodiscard]] Duration switching_pause(const Accessories& wanted, bool coolant_word) const;
   [[nodiscard]] bool reports(vocabulary::ReportBit bit) const;
   [[nodiscard]] AxisSteps steps() const { return executor.steps_at(now); }
   [[nodiscard]] AxisValues position_mm() const;

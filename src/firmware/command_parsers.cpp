@@ -38,6 +38,25 @@ NameAndValue split_value(std::string_view line) {
   return parts;
 }
 
+/// Rabbit: the name ends at the first blank; `[name]value` is the same as `$name=value` but for an empty value
+/// (SourceRabbit/RabbitGRBL ProcessSettings.cpp).
+std::optional<NameAndValue> name_and_value_rabbit(std::string_view line) {
+  constexpr std::string_view kBlanks = " \t\v\f";
+  const bool bracketed = line.starts_with('[');
+  line.remove_prefix(1);
+  const auto end = bracketed ? line.rfind(']') : line.find('=');
+  if (bracketed && end == std::string_view::npos) return std::nullopt;
+  NameAndValue parts;
+  if (end != std::string_view::npos) {
+    parts.value = line.substr(end + 1);
+    parts.has_value = !bracketed || !parts.value.empty();
+  }
+  std::string_view name = line.substr(0, end);
+  name.remove_prefix(std::min(name.find_first_not_of(kBlanks), name.size()));
+  parts.name = name.substr(0, name.find_first_of(kBlanks));
+  return parts;
+}
+
 ParsedCommand command_of(const CommandRow& row, NameAndValue parts) {
   return {.command = row.command,
           .states = row.states,
@@ -101,21 +120,35 @@ Parsed parse_command_grbl(const Personality& personality, std::string_view line,
 
 Parsed parse_command_rabbit(const Personality& personality, std::string_view line, MachineState state,
                             bool /*critical*/) {
-  if (base::trim(line).empty()) return ParsedCommand{.command = Command::Help};
-  NameAndValue parts = split_value(line);
-  parts.value = base::trim(parts.value);
-  if (const CommandRow* row = find_row(personality, parts.name)) {
-    if (!row->states.contains(state)) return std::unexpected(ErrorCode::IdleError);
-    if ((row->needs_value && !parts.has_value) || (parts.has_value && !row->takes_value)) {
-      return std::unexpected(ErrorCode::InvalidStatement);
-    }
-    return command_of(*row, std::move(parts));
+  std::optional<NameAndValue> read = name_and_value_rabbit(line);
+  if (!read) return std::unexpected(ErrorCode::InvalidStatement);
+  NameAndValue& parts = *read;
+  const auto names = [&](const CommandRow& row) {
+    return base::iequals(row.name, parts.name) || (!row.long_name.empty() && base::iequals(row.long_name, parts.name));
+  };
+  const auto row = std::ranges::find_if(personality.commands, names);
+  if (row == personality.commands.end()) {
+    return ParsedCommand{.command = parts.has_value ? Command::WriteSetting : Command::ReadSetting,
+                         .key = std::move(parts.name),
+                         .value = std::move(parts.value),
+                         .has_value = parts.has_value};
   }
-  return ParsedCommand{.command = parts.has_value ? Command::WriteSetting : Command::ReadSetting,
-                       .states = parts.has_value ? kIdleOrAlarm : StateSet::any(),
-                       .key = std::string{base::trim(line.substr(0, line.find('=')))},
-                       .value = std::move(parts.value),
-                       .has_value = parts.has_value};
+  if (row->command == Command::StoreStartupLine && !parts.has_value) {
+    const bool by_name = base::iequals(row->long_name, parts.name);
+    return ParsedCommand{.command = Command::ReadStartupLine,
+                         .key = std::string{row->prefix},
+                         .value = std::string{by_name ? row->long_name : row->name}};
+  }
+  if (row->ignores_value) {
+    parts.has_value = false;
+    parts.value.clear();
+  }
+  ParsedCommand command = command_of(*row, std::move(parts));
+  if (!command.states.contains(state)) return std::unexpected(ErrorCode::IdleError);
+  if ((row->needs_value && !command.has_value) || (command.has_value && !row->takes_value)) {
+    return std::unexpected(ErrorCode::InvalidStatement);
+  }
+  return command;
 }
 
 Parsed parse_command_grblhal(const Personality& personality, std::string_view line, MachineState state, bool critical) {

@@ -47,11 +47,26 @@ TEST(CommandParser, GrblHalBlocksInCriticalAlarm) {
 
 TEST(CommandParser, RabbitKnowsNamesAndNumbers) {
   const Personality& personality = personality_of(Firmware::Rabbit);
-  const auto named = personality.parse_command(personality, "Homing/Enable = 1", MachineState::Idle, false);
+  const auto named = personality.parse_command(personality, "$Homing/Enable = 1", MachineState::Idle, false);
   ASSERT_TRUE(named);
   EXPECT_EQ(named->key, "Homing/Enable");
-  EXPECT_EQ(named->value, "1");
-  EXPECT_EQ(personality.parse_command(personality, "110", MachineState::Idle, false)->command, Command::ReadSetting);
+  EXPECT_EQ(named->value, " 1");
+  EXPECT_EQ(personality.parse_command(personality, "$110", MachineState::Idle, false)->command, Command::ReadSetting);
+  EXPECT_EQ(personality.parse_command(personality, "$gcode/modes=1", MachineState::Run, false)->command,
+            Command::ParserState);
+}
+
+TEST(CommandParser, RabbitTakesBrackets) {
+  const Personality& personality = personality_of(Firmware::Rabbit);
+  const auto parse = [&](std::string_view line) {
+    return personality.parse_command(personality, line, MachineState::Idle, false);
+  };
+  EXPECT_EQ(parse("[X/MaxRate]500"),
+            (ParsedCommand{.command = Command::WriteSetting, .key = "X/MaxRate", .value = "500", .has_value = true}));
+  EXPECT_EQ(parse("[X/MaxRate]")->command, Command::ReadSetting);
+  EXPECT_EQ(parse("[J]G91X1F100")->command, Command::Jog);
+  EXPECT_EQ(parse("[X").error(), ErrorCode::InvalidStatement);
+  EXPECT_EQ(parse("$X Y")->command, Command::Unlock);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ using vocabulary::FeedbackText;
 
 namespace {
 
-// gnea/grbl config.h SAFETY_DOOR_SPINDLE_DELAY and SAFETY_DOOR_COOLANT_DELAY; grblHAL has settings for them.
+// gnea/grbl config.h SAFETY_DOOR_SPINDLE_DELAY and SAFETY_DOOR_COOLANT_DELAY; the others have settings for them.
 constexpr double kSpindleRestoreSeconds = 4.0;
 constexpr double kCoolantRestoreSeconds = 1.0;
 constexpr unsigned kRestoreAfterHoldBit = 1;
@@ -240,7 +240,8 @@ void Cycle::restore_next() {
     wanted.spindle = to_restore_.spindle;
     wanted.programmed_rpm = to_restore_.programmed_rpm;
     board_.set_accessories(wanted);
-    restored_at_ = board_.now + base::from_seconds(delay_s(board_, setting::kDoorSpindleDelay, kSpindleRestoreSeconds));
+    restored_at_ = board_.now + base::from_seconds(delay_s(board_, board_.personality.realtime.door_spindle_setting,
+                                                           kSpindleRestoreSeconds));
     return;
   }
   if (restoring_ != Restoring::Coolant && (to_restore_.flood || to_restore_.mist)) {
@@ -248,7 +249,8 @@ void Cycle::restore_next() {
     wanted.flood = to_restore_.flood;
     wanted.mist = to_restore_.mist;
     board_.set_accessories(wanted);
-    restored_at_ = board_.now + base::from_seconds(delay_s(board_, setting::kDoorCoolantDelay, kCoolantRestoreSeconds));
+    restored_at_ = board_.now + base::from_seconds(delay_s(board_, board_.personality.realtime.door_coolant_setting,
+                                                           kCoolantRestoreSeconds));
     return;
   }
   restoring_ = Restoring::No;

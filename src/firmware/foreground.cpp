@@ -109,8 +109,9 @@ void Foreground::begin_line(const gcode::ReadLine& line) {
     steps_.emplace_back(Answer{.code = ErrorCode::LineTooLong});
   } else if (line.text.empty()) {
     steps_.emplace_back(Answer{});
-  } else if (line.text.front() == '$') {
-    const auto result = commands_.execute(line.text.substr(1), steps_);
+  } else if (line.text.front() == '$' || (line.text.front() == '[' && board_.personality.names_settings)) {
+    const std::string_view text = line.text;
+    const auto result = commands_.execute(board_.personality.names_settings ? text : text.substr(1), steps_);
     if (result) return;
     if (result.error() == ErrorCode::LimitsEngaged) {
       steps_.insert(steps_.end(),

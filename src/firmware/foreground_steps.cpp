@@ -24,7 +24,14 @@ bool Foreground::operator()(Answer& step) {
   if (step.code == ErrorCode::Ok) {
     board_.say(protocol::Ok{});
   } else {
-    board_.say(protocol::ErrorAnswer{.code = vocabulary::number_of(step.code)});
+    const int code = vocabulary::number_of(step.code);
+    if (board_.settings.number("Errors/Verbose") == 0) {
+      board_.say(protocol::ErrorAnswer{.code = code});
+    } else {
+      const auto* row = vocabulary::find_code(board_.personality.dialect().errors, code);
+      board_.say(protocol::ErrorAnswer{.code = protocol::ErrorAnswer::kUnnumbered,
+                                       .text = row != nullptr ? std::string{row->title} : std::to_string(code)});
+    }
   }
   return true;
 }
@@ -168,12 +175,20 @@ bool Foreground::operator()(Perform& step) {
                      if (end.restores_overrides) restore_overrides();
                    }
                    if (board_.job.is_read()) end_file_job();
-                   board_.say(FeedbackText::ProgramEnd);
                  },
                  [](const auto&) {},
              },
              step.action);
+  Steps after;
+  const auto* coolant = std::get_if<gcode::CoolantChange>(&step.action);
+  const Duration pause = board_.switching_pause(wanted, coolant != nullptr && coolant->waits);
+  if (!checks_only && pause > Duration::zero()) after.emplace_back(Freeze{.duration = pause});
+  if (std::holds_alternative<gcode::ProgramEnd>(step.action)) {
+    after.emplace_back(Say{.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(
+                                                             board_.personality.firmware, FeedbackText::ProgramEnd)}}});
+  }
   if (!checks_only) board_.set_accessories(wanted);
+  insert_front(std::move(after));
   return true;
 }
 

@@ -22,10 +22,16 @@ std::string letters_of(AxisMask axes, int count) {
   return letters;
 }
 
-std::string path_of(const SettingsStore::Slot& slot) {
-  const SettingRow& row = *slot.match.row;
-  if (!row.per_axis) return std::string{row.path};
-  return std::string(1, vocabulary::kAxisLetters[static_cast<std::size_t>(slot.match.axis)]) + std::string{row.path};
+constexpr int kAxesWithNames = 6;
+
+/// As Rabbit prints a value beside its name: On and Off, and letters instead of masks.
+std::string named_value(const vocabulary::SettingMatch& match, std::string_view text) {
+  switch (match.row->type) {
+    case SettingType::Bool: return text == "1" ? "On" : "Off";
+    case SettingType::Axes:
+      return letters_of(static_cast<AxisMask>(base::parse_int<int>(text).value_or(0)), kAxesWithNames);
+    default: return std::string{text};
+  }
 }
 
 std::string type_words(const SettingRow& row) {
@@ -59,7 +65,7 @@ constexpr std::array<std::string_view, 2> kCardPlugins = {"SDCARD v1.27", "FS st
 
 std::string key_of(const SettingsStore::Slot& slot) {
   const SettingRow& row = *slot.match.row;
-  return row.id >= 0 ? std::to_string(row.id + slot.match.axis) : path_of(slot);
+  return row.id >= 0 ? std::to_string(row.id + slot.match.axis) : vocabulary::path_of(slot.match);
 }
 
 void Listing::line(std::string text) {
@@ -108,30 +114,71 @@ void Listing::one_setting(const SettingsStore::Slot& slot) {
   board_.say(protocol::SettingValue{.id = key_of(slot), .value = slot.text});
 }
 
-void Listing::named_settings() {
+void Listing::one_named_setting(const SettingsStore::Slot& slot) {
+  one_named(vocabulary::path_of(slot.match), named_value(slot.match, slot.text));
+}
+
+void Listing::one_named(std::string_view name, std::string_view value) {
+  board_.say(protocol::SettingValue{.id = std::string{name}, .value = std::string{value}});
+}
+
+std::vector<std::pair<std::string, std::string>> Listing::named() const {
+  std::vector<std::pair<std::string, std::string>> rows;
   for (const auto& slot : board_.settings.slots()) {
-    board_.say(protocol::SettingValue{.id = path_of(slot), .value = slot.text});
+    rows.emplace_back(vocabulary::path_of(slot.match), named_value(slot.match, slot.text));
   }
+  for (std::size_t line = 0; line < board_.stored.startup_lines.size(); ++line) {
+    rows.emplace_back("GCode/Line" + std::to_string(line), board_.stored.startup_lines.at(line));
+  }
+  return rows;
+}
+
+void Listing::named_settings() {
+  for (const auto& [name, value] : named()) one_named(name, value);
 }
 
 void Listing::changed_settings() {
   for (const auto& slot : board_.settings.slots()) {
-    const std::string_view usual = slot.match.row->default_value;
+    const std::string_view usual = vocabulary::default_of(slot.match);
     if (slot.text == usual) continue;
-    board_.say(
-        protocol::SettingValue{.id = path_of(slot), .value = slot.text + "(Default=" + std::string{usual} + ")"});
+    one_named(vocabulary::path_of(slot.match),
+              named_value(slot.match, slot.text) + "    (Default=" + named_value(slot.match, usual) + ")");
   }
+}
+
+void Listing::one_startup_line(std::string_view index, std::string_view name) {
+  const auto line = base::parse_int<std::size_t>(index).value_or(0);
+  one_named(name, board_.stored.startup_lines.at(line));
+}
+
+void Listing::state() {
+  constexpr std::array kOrder = {MachineState::Idle, MachineState::Alarm, MachineState::Check,
+                                 MachineState::Home, MachineState::Run,   MachineState::Hold,
+                                 MachineState::Jog,  MachineState::Door,  MachineState::Sleep};
+  const auto number = std::ranges::find(kOrder, board_.state) - kOrder.begin();
+  line("State 0x" + std::to_string(number));
+}
+
+void Listing::memory_use() {
+  constexpr std::size_t kEntries = 630;
+  const std::size_t used = board_.stored.settings.size() + board_.stored.offsets.size();
+  line("[MSG: NVS Used: " + std::to_string(used) + " Free: " + std::to_string(kEntries - used) +
+       " Total: " + std::to_string(kEntries) + "]");
 }
 
 void Listing::setting_names() {
   for (const auto& slot : board_.settings.slots()) {
-    if (slot.match.row->id >= 0) line("$" + key_of(slot) + " => $" + path_of(slot));
+    if (slot.match.row->id >= 0) line("$" + key_of(slot) + " => $" + vocabulary::path_of(slot.match));
   }
 }
 
 void Listing::commands() {
   for (const CommandRow& row : board_.personality.commands) {
-    if (!row.name.empty()) line("$" + std::string{row.name});
+    if (!row.long_name.empty()) {
+      line("$" + std::string{row.long_name} + " or $" + std::string{row.name});
+    } else if (!row.name.empty()) {
+      line("$" + std::string{row.name});
+    }
   }
 }
 

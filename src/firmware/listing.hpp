@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "firmware/board.hpp"
 
@@ -25,6 +27,15 @@ class Listing {
   void setting_names();
   void commands();
   void one_setting(const SettingsStore::Slot& slot);
+  /// As Rabbit prints it by name: `$Homing/Enable=On`.
+  void one_named_setting(const SettingsStore::Slot& slot);
+  void one_named(std::string_view name, std::string_view value);
+  /// Name and value of each setting that has a name.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> named() const;
+  /// `$N0` alone, under the name it was asked for.
+  void one_startup_line(std::string_view index, std::string_view name);
+  void state();
+  void memory_use();
   void describe_setting(const SettingsStore::Slot& slot);
   void setting_description(std::string_view key);
   void startup_lines();

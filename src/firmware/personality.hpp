@@ -88,6 +88,11 @@ enum class Command : std::uint8_t {
   ListNamedSettings,
   ListSettingNames,
   ListCommands,
+  ReadStartupLine,
+  ListState,
+  ReleaseMotors,
+  EraseMemory,
+  MemoryUse,
 };
 
 /// One `$` command of a firmware.
@@ -98,8 +103,10 @@ struct CommandRow {
   /// Given in front of whatever follows `=`: the axis of `$HX`, the number of `$N0`.
   std::string_view prefix{};
   bool takes_value = false;      ///< `$I=text`
+  bool ignores_value = false;    ///< `$G=1` is `$G`
   bool needs_value = false;      ///< without `=` it is error:3
   bool works_critically = true;  ///< grblHAL: also while only a reset helps; otherwise error:79
+  std::string_view long_name{};  ///< Rabbit: "GCode/Modes"
 };
 
 /// A `$` line, understood.
@@ -185,6 +192,9 @@ struct RealtimeRules {
   bool toggles_coolant_in_jog = false;
   bool resume_says_nothing_said = false;  ///< grblHAL: an empty `[MSG:]` when a hold ends and `$63` bit 1 is set
   int door_resuming_substate = 3;
+  /// Settings with the waits for spindle and coolant before a door or hold ends; where they are missing 4 s and 1 s.
+  int door_spindle_setting = 392;
+  int door_coolant_setting = 393;
   bool door_again_ignored = false;  ///< 0x84 while in Door already
 };
 
@@ -221,6 +231,13 @@ struct Personality {
   /// grblHAL's settings beyond Grbl's, and what hangs on them: jog clipping, door and tool change options, reset
   /// actions.
   bool has_extended_settings = false;
+  /// Rabbit: settings and commands have names, a part of a name lists what it is part of, `[X/MaxRate]500` is
+  /// `$X/MaxRate=500`, and axes that the board lacks have settings.
+  bool names_settings = false;
+  /// Rabbit waits after it has switched the spindle (`$37`, `$38`) or a coolant on (`$60`, `$61`).
+  bool waits_after_switching = false;
+  /// `$22`=0 takes `$20` back.
+  bool soft_limits_need_homing = true;
   bool tells_build_at_length = false;    ///< `$I` says as much as `$I+`
   bool options_follow_settings = false;  ///< the letters of `[OPT:]`
   bool version_has_user_text = true;
@@ -233,11 +250,12 @@ struct Personality {
   bool check_mode_is_silent = false;
   bool restore_resets = true;  ///< `$RST=` ends in a reset
   bool restores_network = false;
-  bool parameters_pause = false;  ///< Rabbit waits 100 ms before the ok of `$#`
+  bool tool_length_stays_metric = false;  ///< `[TLO:]` in spite of `$13`
+  bool parameters_pause = false;          ///< Rabbit waits 100 ms before the ok of `$#`
   bool stored_writes_synchronise = false;
   bool has_work_offset_sync_bit = false;  ///< `$10` bit 8; otherwise every change of WCO waits for the motion
   bool soft_limits_in_check = false;
-  bool skips_empty_dwell = false;  ///< G4 P0 does not even wait for the motion
+  bool skips_empty_dwell = false;  ///< a dwell of no time does not even wait for the motion
   /// The board's spindle takes its power from the step interrupt, so `$32`=1 is laser mode; else S changes wait for the
   /// motion all the same (motion.md 1.5).
   bool has_laser_spindle = false;

@@ -358,6 +358,12 @@ void Reporter::say_status_to_pendant(std::size_t rx_free, bool everything) {
 }
 
 void Reporter::say_tool_length_offset() {
+  if (board_.personality.tool_length_stays_metric) {
+    constexpr int kDecimals = 3;
+    const auto length = static_cast<double>(board_.interpreter.offsets().tool_length.at(2));
+    board_.say(protocol::Unrecognized{.line = "[TLO:" + base::to_fixed(length, kDecimals) + "]"});
+    return;
+  }
   std::vector<double> values = in_report_units(board_.interpreter.offsets().tool_length);
   if (!board_.personality.dialect().tool_length_offset_per_axis) values = {values.at(2)};
   board_.say(protocol::ToolLengthOffset{.values = std::move(values)});

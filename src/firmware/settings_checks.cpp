@@ -83,6 +83,43 @@ Checked check_integer_grblhal(const SettingsStore& store, const SettingMatch& ma
   return std::to_string(all_off ? 0U : *value);
 }
 
+bool is_text(SettingType type) {
+  return type == SettingType::Text || type == SettingType::Password || type == SettingType::Ipv4;
+}
+
+/// A number as C's strtol reads it, cut to 32 bits; nothing may follow it.
+std::optional<std::int32_t> whole_number(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  const auto value = base::parse_int<std::int64_t>(text);
+  if (!value) return std::nullopt;
+  return static_cast<std::int32_t>(*value);
+}
+
+/// Rabbit: a mask, or the letters of the axes in any order (SourceRabbit/RabbitGRBL Settings.cpp).
+Checked check_axes_rabbit(std::string_view text) {
+  if (text.empty()) return "0";
+  if (const auto mask = whole_number(text)) return std::to_string(*mask);
+  unsigned mask = 0;
+  for (const char letter : text) {
+    const auto at = std::string_view{"XYZABC"}.find(base::to_upper(letter));
+    if (at == std::string_view::npos) return std::unexpected(ErrorCode::BadNumberFormat);
+    mask |= 1U << at;
+  }
+  return std::to_string(mask);
+}
+
+/// Rabbit: one of the names, or its number modulo 256.
+Checked check_choice_rabbit(const SettingRow& row, std::string_view text) {
+  const auto items = base::split(row.format, ',');
+  for (const std::string_view item : items) {
+    if (base::iequals(item, text)) return std::string{item};
+  }
+  const auto number = whole_number(text);
+  const std::size_t at = number ? static_cast<std::uint32_t>(*number) & kByte : items.size();
+  if (at >= items.size()) return std::unexpected(ErrorCode::BadNumberFormat);
+  return std::string{items[at]};
+}
+
 bool needs_homing(const SettingRow& row) {
   return row.id == setting::kSoftLimits || (row.id == setting::kLimitJogs && row.type == SettingType::Bool);
 }
@@ -125,27 +162,35 @@ Checked check_setting_grbl(const SettingsStore& store, const SettingMatch& match
 
 Checked check_setting_rabbit(const SettingsStore& /*store*/, const SettingMatch& match, std::string_view text) {
   const SettingRow& row = *match.row;
+  if (is_text(row.type)) return std::string{text};
   text = base::trim(text);
   switch (row.type) {
-    case SettingType::Text:
-    case SettingType::Password:
-    case SettingType::Ipv4: return check_length(row, text, ErrorCode::SettingTextInvalid);
     case SettingType::Bool: {
-      // SourceRabbit/RabbitGRBL SettingsDefinitions: whatever is not one of these words is off.
-      constexpr std::array<std::string_view, 6> kOn = {"1", "on", "true", "enable", "enabled", "yes"};
+      // SourceRabbit/RabbitGRBL Settings.cpp: whatever is not one of these words is off.
+      constexpr std::array<std::string_view, 5> kOn = {"1", "on", "true", "enabled", "yes"};
       return std::string{std::ranges::any_of(kOn, [&](auto word) { return base::iequals(word, text); }) ? "1" : "0"};
     }
-    default: break;
+    case SettingType::Axes: return check_axes_rabbit(text);
+    case SettingType::Radio: return check_choice_rabbit(row, text);
+    case SettingType::Decimal: {
+      const auto number = leading_number(text);
+      if (!number || !number->rest.empty()) return std::unexpected(ErrorCode::BadNumberFormat);
+      const auto value = static_cast<double>(number->value);
+      if (below_minimum(row, value) || above_maximum(row, value)) {
+        return std::unexpected(ErrorCode::SettingNumberOutOfRange);
+      }
+      return print_decimal(row, value);
+    }
+    default: {
+      const auto value = whole_number(text);
+      if (!value) return std::unexpected(ErrorCode::BadNumberFormat);
+      const auto number = static_cast<double>(*value);
+      if (below_minimum(row, number) || above_maximum(row, number)) {
+        return std::unexpected(ErrorCode::SettingNumberOutOfRange);
+      }
+      return std::to_string(*value);
+    }
   }
-  const auto value = base::parse_decimal(text);
-  if (!value) return std::unexpected(ErrorCode::BadNumberFormat);
-  if (below_minimum(row, *value) || above_maximum(row, *value)) {
-    return std::unexpected(ErrorCode::SettingNumberOutOfRange);
-  }
-  if (row.type == SettingType::Decimal) return print_decimal(row, *value);
-  if (*value != std::floor(*value)) return std::unexpected(ErrorCode::BadNumberFormat);
-  if (*value < 0) return std::unexpected(ErrorCode::SettingNumberOutOfRange);
-  return std::to_string(static_cast<std::int64_t>(*value));
 }
 
 }  // namespace kerf::firmware

@@ -1,5 +1,7 @@
 #include "firmware/settings_store.hpp"
 
+#include <algorithm>
+
 #include "common/base/text.hpp"
 
 namespace kerf::firmware {
@@ -18,13 +20,21 @@ constexpr unsigned kFirstRotary = 3;
 constexpr unsigned kParkingOverrideBit = 2;
 
 /// A mask over all axes is written down for three of them (vocabulary::SettingRow), one over rotary axes for all.
-std::string default_text(const SettingRow& row, int axes) {
+std::string default_text(const SettingMatch& match, int axes) {
+  const SettingRow& row = *match.row;
   if (row.id == setting::kRotaryAxes) {
     const auto mask = static_cast<unsigned>(base::parse_int(row.default_value).value_or(0));
     return std::to_string(mask & ((1U << (static_cast<unsigned>(axes) - kFirstRotary)) - 1U));
   }
   if (row.type == SettingType::Axes && row.default_value == "7") return std::to_string((1 << axes) - 1);
-  return std::string{row.default_value};
+  return std::string{vocabulary::default_of(match)};
+}
+
+/// Position of a radio's item in its format; the text itself if it is none.
+std::string number_text(const SettingRow& row, std::string_view text) {
+  if (row.type != SettingType::Radio || row.path.empty()) return std::string{text};
+  const auto items = base::split(row.format, ',');
+  return std::to_string(std::ranges::find(items, text) - items.begin());
 }
 
 }  // namespace
@@ -42,7 +52,7 @@ SettingsStore::SettingsStore(const Personality& personality, int axes)
   for (const SettingRow& row : rows_) {
     first_slot_.push_back(slots_.size());
     if (!vocabulary::is_usual(row, axes_)) continue;
-    const int count = row.per_axis ? axes_ : 1;
+    const int count = row.per_axis ? axes_with_settings() : 1;
     for (int axis = 0; axis < count; ++axis) {
       slots_.push_back({.match = {.row = &row, .axis = axis}, .format = vocabulary::format_of(row, axes_)});
     }
@@ -51,7 +61,7 @@ SettingsStore::SettingsStore(const Personality& personality, int axes)
 }
 
 void SettingsStore::restore_defaults() {
-  for (Slot& slot : slots_) set(slot.match, default_text(*slot.match.row, axes_));
+  for (Slot& slot : slots_) set(slot.match, default_text(slot.match, axes_));
 }
 
 std::vector<std::string> SettingsStore::load(const StoredState& stored) {
@@ -69,8 +79,9 @@ void SettingsStore::save(StoredState& stored) const {
   stored.settings.clear();
   for (const Slot& slot : slots_) {
     const SettingRow& row = *slot.match.row;
-    if (slot.text == default_text(row, axes_)) continue;
-    const std::string key = row.id >= 0 ? std::to_string(row.id + slot.match.axis) : std::string{row.path};
+    // What is kept of a further axis' steps per mm gives the machine that axis (axes_of).
+    if (slot.match.axis >= axes_ || slot.text == default_text(slot.match, axes_)) continue;
+    const std::string key = row.id >= 0 ? std::to_string(row.id + slot.match.axis) : vocabulary::path_of(slot.match);
     stored.settings.insert_or_assign(key, slot.text);
   }
 }
@@ -90,13 +101,13 @@ std::expected<void, ErrorCode> SettingsStore::write(std::string_view key, std::s
 void SettingsStore::set(const SettingMatch& match, std::string text) {
   auto& slot = slots_.at(first_slot_.at(static_cast<std::size_t>(match.row - rows_.data())) +
                          static_cast<std::size_t>(match.axis));
-  slot.number = is_text(match.row->type) ? 0.0 : base::parse_decimal(text).value_or(0.0);
+  slot.number = is_text(match.row->type) ? 0.0 : base::parse_decimal(number_text(*match.row, text)).value_or(0.0);
   slot.text = std::move(text);
 }
 
 void SettingsStore::apply_consequences() {
   // Without homing there are no soft limits, nor clipped jogs (gnea/grbl settings.c; grblHAL settings.c).
-  if (flag(setting::kHoming)) return;
+  if (!personality_.soft_limits_need_homing || flag(setting::kHoming)) return;
   for (const int id : {setting::kSoftLimits, setting::kLimitJogs}) {
     const auto match = vocabulary::find_setting(rows_, id, axes_);
     if (match && match->row->type == SettingType::Bool && slot_of(*match) != nullptr) set(*match, "0");
@@ -110,8 +121,12 @@ const SettingsStore::Slot* SettingsStore::slot_of(const SettingMatch& match) con
 }
 
 const SettingsStore::Slot* SettingsStore::find(std::string_view key) const {
-  const auto match = vocabulary::find_setting(rows_, key, axes_);
+  const auto match = vocabulary::find_setting(rows_, key, axes_with_settings());
   return match ? slot_of(*match) : nullptr;
+}
+
+int SettingsStore::axes_with_settings() const {
+  return personality_.names_settings ? personality_.dialect().axes_max : axes_;
 }
 
 std::string_view SettingsStore::format_of(const SettingMatch& match) const {
@@ -131,6 +146,11 @@ double SettingsStore::number(int id, int axis) const {
   return slot != nullptr ? slot->number : 0.0;
 }
 
+double SettingsStore::number(std::string_view name) const {
+  const Slot* slot = find(name);
+  return slot != nullptr ? slot->number : 0.0;
+}
+
 bool SettingsStore::flag(int id, unsigned bit) const {
   return ((mask(id) >> bit) & 1U) != 0;
 }
@@ -144,7 +164,9 @@ vocabulary::AxisValues SettingsStore::axis_values(int id) const {
 }
 
 bool SettingsStore::is_laser() const {
-  return personality_.has_laser_spindle && number(setting::kMode) == 1.0;
+  constexpr double kLaserType = 3.0;
+  const bool has_laser = personality_.has_laser_spindle || number("Spindle/Type") == kLaserType;
+  return has_laser && number(setting::kMode) == 1.0;
 }
 
 motion::MotionSettings SettingsStore::motion() const {

@@ -2,6 +2,7 @@
 // The `$` settings of one controller: values, validation, and what motion and the interpreter make of them.
 
 #include <cstddef>
+#include <cstdint>
 #include <expected>
 #include <optional>
 #include <string>
@@ -47,7 +48,9 @@ class SettingsStore {
   /// Value of setting `id` (of its axis `axis`); 0 if this firmware has none.
   [[nodiscard]] double number(int id, int axis = 0) const;
   [[nodiscard]] bool flag(int id, unsigned bit = 0) const;
-  [[nodiscard]] unsigned mask(int id) const { return static_cast<unsigned>(number(id)); }
+  /// Value of a setting that only has a name, radios by position; 0 if this firmware has none.
+  [[nodiscard]] double number(std::string_view name) const;
+  [[nodiscard]] unsigned mask(int id) const { return static_cast<unsigned>(static_cast<std::int64_t>(number(id))); }
   /// Values of a setting that each axis has, from X's id on.
   [[nodiscard]] vocabulary::AxisValues axis_values(int id) const;
 
@@ -61,6 +64,7 @@ class SettingsStore {
   void configure(gcode::InterpreterSettings& settings) const;
 
  private:
+  [[nodiscard]] int axes_with_settings() const;
   [[nodiscard]] const Slot* slot_of(const vocabulary::SettingMatch& match) const;
   void set(const vocabulary::SettingMatch& match, std::string text);
   void apply_consequences();
@@ -94,6 +98,10 @@ inline constexpr int kHomingPullOff = 27;
 inline constexpr int kSpindleMax = 30;
 inline constexpr int kSpindleMin = 31;
 inline constexpr int kMode = 32;
+inline constexpr int kSpindleUpDelay = 37;    // Rabbit
+inline constexpr int kSpindleDownDelay = 38;  // Rabbit
+inline constexpr int kFloodDelay = 60;        // Rabbit
+inline constexpr int kMistDelay = 61;         // Rabbit
 inline constexpr int kStepsPerMm = 100;
 inline constexpr int kMaxRate = 110;
 inline constexpr int kAcceleration = 120;
@@ -122,8 +130,6 @@ inline constexpr int kToolProbePullOff = 345;
 inline constexpr int kToolChangeOptions = 346;
 inline constexpr int kRotaryAxes = 376;
 inline constexpr int kG92Volatile = 384;
-inline constexpr int kDoorSpindleDelay = 392;
-inline constexpr int kDoorCoolantDelay = 393;
 inline constexpr int kSpindleOnDelay = 394;
 inline constexpr int kPlannerBlocks = 398;
 inline constexpr int kAutoReport = 481;

@@ -59,6 +59,16 @@ TEST(SettingsStore, RabbitChecks) {
   expect_all(Firmware::Rabbit, {{"0", "2", nullptr, ErrorCode::SettingNumberOutOfRange},
                                 {"13", "on", "1"},
                                 {"110", "abc", nullptr, ErrorCode::BadNumberFormat},
+                                {"13", "maybe", "0"},
+                                {"3", "xZ", "5"},
+                                {"3", "-1", "-1"},
+                                {"3", "xq", nullptr, ErrorCode::BadNumberFormat},
+                                {"Spindle/Type", "laser", "LASER"},
+                                {"Spindle/Type", "257", "PWM"},
+                                {"Spindle/Type", "9", nullptr, ErrorCode::BadNumberFormat},
+                                {"104", "7", "7.000"},
+                                {"1", "1.5", nullptr, ErrorCode::BadNumberFormat},
+                                {"73", "1", nullptr, ErrorCode::InvalidStatement},
                                 {"77", "1", nullptr, ErrorCode::InvalidStatement}});
 }
 

@@ -48,7 +48,7 @@ SystemCommands::Result SystemCommands::understand(std::string_view line, Steps& 
 
 SystemCommands::Result SystemCommands::dispatch(const ParsedCommand& command, Steps& steps) {
   switch (command.command) {
-    case Command::WriteSetting: return write_setting(command);
+    case Command::WriteSetting: return write_setting(command, steps);
     case Command::ReadSetting: return read_setting(command);
     case Command::DescribeSetting: return describe_setting(command);
     case Command::CheckMode: return check_mode(steps);
@@ -57,10 +57,13 @@ SystemCommands::Result SystemCommands::dispatch(const ParsedCommand& command, St
     case Command::Jog: return jog(command, steps);
     case Command::StoreUserText: return store_user_text(command);
     case Command::BuildInformation:
+      if (command.has_value && board_.personality.names_settings) return std::unexpected(ErrorCode::InvalidStatement);
       if (command.has_value) return store_user_text(command);
       listing_.build_information(board_.personality.tells_build_at_length);
       return {};
     case Command::StoreStartupLine: return store_startup_line(command, steps);
+    case Command::ReleaseMotors: return release_motors(command);
+    case Command::EraseMemory: board_.stored = {}; return {};
     case Command::Restore: return restore(command, steps);
     case Command::Sleep: return sleep(steps);
     case Command::BlockDelete:
@@ -96,6 +99,9 @@ SystemCommands::Result SystemCommands::dispatch_listing(const ParsedCommand& com
       break;
     case Command::ExtendedBuildInformation: listing_.build_information(true); break;
     case Command::ListStartupLines: listing_.startup_lines(); break;
+    case Command::ReadStartupLine: listing_.one_startup_line(command.key, command.value); break;
+    case Command::ListState: listing_.state(); break;
+    case Command::MemoryUse: listing_.memory_use(); break;
     case Command::ListSettingGroups: listing_.setting_groups(); break;
     case Command::ListSettingDefinitions: listing_.setting_definitions(); break;
     case Command::ListAlarmsAsCsv: listing_.alarms_as_csv(); break;
@@ -138,6 +144,7 @@ SystemCommands::Result SystemCommands::describe_setting(const ParsedCommand& com
 }
 
 SystemCommands::Result SystemCommands::read_setting(const ParsedCommand& command) {
+  if (board_.personality.names_settings) return read_named_setting(command);
   const auto* slot = board_.settings.find(command.key);
   if (slot == nullptr) {
     return std::unexpected(board_.personality.unknown_setting_error);
@@ -146,14 +153,16 @@ SystemCommands::Result SystemCommands::read_setting(const ParsedCommand& command
   return {};
 }
 
-SystemCommands::Result SystemCommands::write_setting(const ParsedCommand& command) {
+SystemCommands::Result SystemCommands::write_setting(const ParsedCommand& command, Steps& added) {
   const AxisValues position = board_.position_mm();
   const AxisValues steps_before = board_.planner.settings().steps_per_mm;
   const AxisValues travel_before = board_.settings.axis_values(setting::kMaxTravel);
+  if (const Result may = may_write(command); !may) return may;
   if (const Result written = board_.settings.write(command.key, command.value); !written) return written;
   board_.apply_settings();
   board_.store_settings();
   if (command.key == std::to_string(setting::kReportInches)) board_.owe_work_offset();
+  if (board_.personality.names_settings) restart_spindle_after(command, added);
   if (!board_.personality.has_extended_settings) return {};
 
   // grblHAL settings.c: a position keeps its millimetres, a new travel makes its axis unhomed, and a new tool change
@@ -281,6 +290,8 @@ SystemCommands::Result SystemCommands::store_startup_line(const ParsedCommand& c
   if (!index || *index >= board_.stored.startup_lines.size()) return std::unexpected(ErrorCode::InvalidStatement);
   constexpr StateSet kStoring = {MachineState::Idle, MachineState::Alarm, MachineState::Check};
   if (!command.value.empty() && !kStoring.contains(board_.state)) return std::unexpected(ErrorCode::IdleError);
+  const bool says_invalid = board_.personality.names_settings;
+  if (says_invalid && board_.state != MachineState::Idle) return std::unexpected(ErrorCode::SettingTextInvalid);
 
   const std::string line = normalised_block(command.value);
   if (line.size() > static_cast<std::size_t>(board_.personality.dialect().stored_line_length)) {
@@ -291,7 +302,9 @@ SystemCommands::Result SystemCommands::store_startup_line(const ParsedCommand& c
       board_.personality.start.startup_blocks_split ? base::split(line, '|') : std::vector<std::string_view>{line};
   for (const std::string_view block : blocks) {
     if (block.empty()) continue;
-    if (const Result added = add_block_steps(board_, block, steps); !added) return added;
+    if (const Result added = add_block_steps(board_, block, steps); !added) {
+      return says_invalid ? std::unexpected(ErrorCode::SettingTextInvalid) : added;
+    }
   }
   board_.stored.startup_lines.at(*index) = line;
   board_.store_settings();
@@ -314,13 +327,19 @@ SystemCommands::Result SystemCommands::restore(const ParsedCommand& command, Ste
     board_.stored.tools.clear();
     board_.load_offsets();
   }
-  if (everything) {
+  // Rabbit counts the startup lines among its settings.
+  if (everything || (settings && names)) {
     board_.stored.startup_lines = {};
     board_.stored.user_text.clear();
   }
   board_.apply_settings();
   board_.store_settings();
-  board_.say(FeedbackText::RestoringDefaults);
+  if (names) {
+    if (settings) board_.say(protocol::Feedback{.text = "Settings reset done"});
+    board_.say(protocol::Feedback{.text = "Position offsets reset done"});
+  } else {
+    board_.say(FeedbackText::RestoringDefaults);
+  }
   steps.emplace_back(Answer{});
   if (board_.personality.restore_resets) steps.emplace_back(Restart{});
   return {};

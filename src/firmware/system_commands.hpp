@@ -18,7 +18,7 @@ class SystemCommands {
   SystemCommands(Board& board, Reporter& reporter)
       : board_(board), reporter_(reporter), listing_(board), card_commands_(board) {}
 
-  /// `line` without its `$`. An error leaves `steps` alone.
+  /// `line` without its `$`, but with it where lines may begin with `[` as well. An error leaves `steps` alone.
   std::expected<void, ErrorCode> execute(std::string_view line, Steps& steps);
 
  private:
@@ -29,7 +29,13 @@ class SystemCommands {
   Result dispatch_listing(const ParsedCommand& command);
   Result describe_setting(const ParsedCommand& command);
   Result read_setting(const ParsedCommand& command);
-  Result write_setting(const ParsedCommand& command);
+  Result write_setting(const ParsedCommand& command, Steps& steps);
+  // Rabbit's.
+  Result read_named_setting(const ParsedCommand& command);
+  Result release_motors(const ParsedCommand& command);
+  [[nodiscard]] Result may_write(const ParsedCommand& command) const;
+  /// A new value of most spindle settings stops the spindle and forgets its speed.
+  void restart_spindle_after(const ParsedCommand& command, Steps& steps);
   Result check_mode(Steps& steps);
   Result unlock();
   Result home(const ParsedCommand& command, Steps& steps);

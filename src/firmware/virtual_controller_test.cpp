@@ -127,7 +127,7 @@ TEST(VirtualController, HomingFindsTheSwitchesAtTheEndOfTravel) {
     EXPECT_EQ(bench.hear().back(), "ok") << personality->dialect().name;
     // Rabbit homes X and Y towards minus by default ($23=3).
     const bool is_rabbit = personality->firmware == Firmware::Rabbit;
-    EXPECT_THAT(bench.send("?").back(), HasSubstr(is_rabbit ? "MPos:1.000,1.000,-1.000" : "MPos:-1.000,-1.000,-1.000"));
+    EXPECT_THAT(bench.send("?").back(), HasSubstr(is_rabbit ? "MPos:2.000,2.000,-2.000" : "MPos:-1.000,-1.000,-1.000"));
   }
 }
 

@@ -255,9 +255,12 @@ ErrorCode act_coolant(Block& block, BlockContext& context) {
   return ErrorCode::Ok;
 }
 
-// The usual Rabbit board has no user pins: whatever number is asked for does not exist.
+// Rabbit's board: outputs 0 to 3 for M62 to M65, of which one leads nowhere, and none for M67 and M68.
 ErrorCode act_pins(Block& block, BlockContext&) {
-  return block.pin_word == PinWord::None ? ErrorCode::Ok : ErrorCode::ParameterPTooLarge;
+  constexpr float kDigitalPins = 4;
+  if (block.pin_word == PinWord::None) return ErrorCode::Ok;
+  const bool exists = block.pin_word == PinWord::Digital && block.p < kDigitalPins;
+  return exists ? ErrorCode::Ok : ErrorCode::ParameterPTooLarge;
 }
 
 ErrorCode act_overrides(Block& block, BlockContext& context) {

@@ -49,8 +49,9 @@ INSTANTIATE_TEST_SUITE_P(Groups, Answers,
                                          AnswerCase{"M7M9", 20, 21, 21}, AnswerCase{"G0G80", 21, 21, 21},
                                          AnswerCase{"G92X1G28", 24, 24, 24}, AnswerCase{"G43.1Z1G49", 24, 24, 21},
                                          AnswerCase{"G43.1Z1G0", 24, 0, 24}, AnswerCase{"M6", 20, 0, 0},
-                                         AnswerCase{"M62P0", 20, 39, 20}, AnswerCase{"M62", 20, 28, 20},
-                                         AnswerCase{"M61Q1", 20, 20, 0}, AnswerCase{"M56", 20, 20, 20}));
+                                         AnswerCase{"M62P0", 20, 0, 20}, AnswerCase{"M62P4", 20, 39, 20},
+                                         AnswerCase{"M62", 20, 28, 20}, AnswerCase{"M61Q1", 20, 20, 0},
+                                         AnswerCase{"M56", 20, 20, 20}));
 
 INSTANTIATE_TEST_SUITE_P(Modes, Answers,
                          testing::Values(AnswerCase{"G1X1", 22, 22, 22}, AnswerCase{"G93G0X1", 0, 22, 0},

@@ -86,6 +86,11 @@ void Interpreter::reset() {
   reload_offsets();
 }
 
+void Interpreter::stop_spindle() {
+  state_.modal.spindle = SpindleDirection::Off;
+  state_.spindle_rpm = 0.0F;
+}
+
 void Interpreter::stop() {
   const ModalState old = state_.modal;
   reset();

@@ -76,6 +76,8 @@ class Interpreter {
 
   /// A coolant toggle by realtime byte shows in the modal state too.
   void set_coolant(const Coolant& coolant) { state_.modal.coolant = coolant; }
+  /// M5 and S0, after a spindle setting was changed (Rabbit).
+  void stop_spindle();
 
   /// Work offset, G92 and tool length together: machine position minus this is the work position.
   [[nodiscard]] AxisValues work_coordinate_offset() const;

@@ -23,9 +23,10 @@ enum class BuildOption : std::uint8_t {
   FourAxes,  ///< machines with four axes or more
   FiveAxes,
   SixAxes,
+  Network,  ///< boards with WiFi
 };
 BOOST_DESCRIBE_ENUM(BuildOption, Usual, Expressions, CutterCompensation, FileSystem, Bluetooth, Driver, FourAxes,
-                    FiveAxes, SixAxes)
+                    FiveAxes, SixAxes, Network)
 
 /// One error or alarm of one firmware, in our own words. `title` fits a headline (no full stop); `text` says the cause
 /// and what to do. Neither contains `|`, `]` or `"`, so the virtual controllers can print them in enumerations.

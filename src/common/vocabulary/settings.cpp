@@ -161,6 +161,16 @@ std::string_view item_of(std::string_view items, int index) {
   return items.substr(0, items.find(','));
 }
 
+std::string_view default_of(const SettingMatch& match) {
+  const SettingRow& row = *match.row;
+  return row.axis_defaults.empty() ? row.default_value : item_of(row.axis_defaults, match.axis);
+}
+
+std::string path_of(const SettingMatch& match) {
+  if (!match.row->per_axis || match.row->path.empty()) return std::string{match.row->path};
+  return std::string{kAxisLetters[static_cast<std::size_t>(match.axis)], '/'} + std::string{match.row->path};
+}
+
 int decimals_of(const SettingRow& row) {
   if (row.type != SettingType::Decimal) return 0;
   // A default shows it best: grblHAL's $33 has the mask "#####0" and prints 5000.0 (transcript 04).

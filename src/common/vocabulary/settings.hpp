@@ -89,11 +89,13 @@ struct SettingRow {
   /// As `format`, on machines with more than three axes; empty if it is the same.
   std::string_view rotary_format{};
   std::string_view path{};  ///< Rabbit's name, such as "Homing/Enable"; `id` is -1 if that is all it has
+  /// In a `per_axis` row the defaults of all axes, separated by commas, where they are not the same.
+  std::string_view axis_defaults{};
   friend constexpr bool operator==(const SettingRow&, const SettingRow&) = default;
 };
 BOOST_DESCRIBE_STRUCT(SettingRow, (),
                       (id, group, name, unit, type, format, min, max, default_value, description, reboot, allow_null,
-                       per_axis, build, rotary_format, path))
+                       per_axis, build, rotary_format, path, axis_defaults))
 
 // Marks for rows of the tables, so that they stay one line.
 [[nodiscard]] constexpr SettingRow per_axis(SettingRow row) {
@@ -116,6 +118,11 @@ BOOST_DESCRIBE_STRUCT(SettingRow, (),
 }
 [[nodiscard]] constexpr SettingRow named(std::string_view path, SettingRow row) {
   row.path = path;
+  return row;
+}
+
+[[nodiscard]] constexpr SettingRow by_axis(std::string_view defaults, SettingRow row) {
+  row.axis_defaults = defaults;
   return row;
 }
 
@@ -159,6 +166,10 @@ struct SettingMatch {
 [[nodiscard]] bool is_usual(const SettingRow& row, int axes);
 /// The items of a bit field or radio, in order; unavailable ones are "N/A".
 [[nodiscard]] std::string_view item_of(std::string_view format, int index);
+/// The default of the setting as `$$` prints it; masks over all axes are for three (SettingRow::default_value).
+[[nodiscard]] std::string_view default_of(const SettingMatch& match);
+/// Rabbit's name: "X/MaxRate"; empty if there is none.
+[[nodiscard]] std::string path_of(const SettingMatch& match);
 /// Digits after the point that the firmware prints: those of the default, else of the `#0.000##` mask.
 [[nodiscard]] int decimals_of(const SettingRow& row);
 
