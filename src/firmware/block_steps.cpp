@@ -48,7 +48,7 @@ class BlockSteps {
     at_mm_ = move.target_mm;
   }
   void operator()(const gcode::ArcMove& move) {
-    steps_.emplace_back(PlanArc{.move = move, .start_mm = at_mm_, .chords = std::nullopt});
+    steps_.emplace_back(PlanArc{.move = move, .start_mm = at_mm_, .chords = std::nullopt, .chord = std::nullopt});
     at_mm_ = move.target_mm;
   }
   void operator()(const gcode::ProbeMove& move) {

@@ -14,6 +14,7 @@ using Parsed = std::expected<ParsedCommand, ErrorCode>;
 namespace {
 
 constexpr StateSet kIdleOrAlarm = {MachineState::Idle, MachineState::Alarm};
+constexpr float kLargestByte = 255;
 
 const CommandRow* find_row(const Personality& personality, std::string_view name) {
   const auto found = std::ranges::find(personality.commands, name, &CommandRow::name);
@@ -71,7 +72,13 @@ Parsed numbered_grbl(Command command, std::string_view line) {
   if (!number) return std::unexpected(ErrorCode::BadNumberFormat);
   if (!number->rest.starts_with('=')) return std::unexpected(ErrorCode::InvalidStatement);
   const std::string_view value = number->rest.substr(1);
-  if (command == Command::WriteSetting && !leading_number(value)) return std::unexpected(ErrorCode::BadNumberFormat);
+  if (command == Command::WriteSetting) {
+    const auto setting = leading_number(value);
+    if (!setting) return std::unexpected(ErrorCode::BadNumberFormat);
+    if (!setting->rest.empty() || number->value > kLargestByte) return std::unexpected(ErrorCode::InvalidStatement);
+    // Before anybody asks whether there is such a setting (gnea/grbl settings.c).
+    if (setting->value < 0) return std::unexpected(ErrorCode::NegativeValue);
+  }
   return ParsedCommand{.command = command,
                        .key = std::to_string(static_cast<int>(number->value)),
                        .value = std::string{value},

@@ -74,6 +74,7 @@ class Foreground {
   bool operator()(Restart& step);
   bool operator()(CheckAtStart& step);
   bool operator()(RunStartupLines& step);
+  bool operator()(KeepStartupLine& step);
   bool operator()(RunStartupBlock& step);
   bool operator()(BeginFileJob& step);
   bool operator()(EndFileJob& step);

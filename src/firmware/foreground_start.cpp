@@ -150,6 +150,12 @@ bool Foreground::operator()(RunStartupLines& /*step*/) {
   return true;
 }
 
+bool Foreground::operator()(KeepStartupLine& step) {
+  board_.stored.startup_lines.at(step.index) = std::move(step.line);
+  board_.store_settings();
+  return true;
+}
+
 bool Foreground::operator()(RunStartupBlock& step) {
   Steps steps;
   const auto result = add_block_steps(board_, step.block, steps);

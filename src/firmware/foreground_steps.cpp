@@ -77,8 +77,8 @@ bool Foreground::operator()(PlanMove& step) {
 bool Foreground::operator()(PlanArc& step) {
   const gcode::ArcMove& move = step.move;
   if (!step.chords) {
-    if (!check_travel(move.target_mm)) return true;
-    if (board_.state == MachineState::Check) return true;
+    if (board_.personality.checks_whole_arcs && !check_travel(move.target_mm)) return true;
+    if (board_.state == MachineState::Check && !board_.personality.soft_limits_in_check) return true;
     const gcode::PlaneAxes axes = gcode::axes_of(move.plane);
     const motion::Arc arc = {
         .start_mm = step.start_mm,
@@ -97,11 +97,14 @@ bool Foreground::operator()(PlanArc& step) {
     feed.rate_mm_per_min *= static_cast<float>(step.chords->inverse_time_factor());
   }
   for (;;) {
-    if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
-    if (!has_planner_room()) return wait_for(WaitingFor::PlannerRoom);
-    const auto chord = step.chords->next();
-    if (!chord || !check_travel(*chord)) return true;
-    board_.plan(*chord, feed);
+    if (!step.chord) step.chord = step.chords->next();
+    if (!step.chord || !check_travel(*step.chord)) return true;
+    if (board_.state != MachineState::Check) {
+      if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
+      if (!has_planner_room()) return wait_for(WaitingFor::PlannerRoom);
+      board_.plan(*step.chord, feed);
+    }
+    step.chord.reset();
   }
 }
 

@@ -174,6 +174,8 @@ struct StartRules {
   bool same_alarm_is_silent = false;         ///< an alarm that is in force already is not printed again
   bool startup_blocks_split = false;         ///< `|` separates blocks in one startup line
   bool has_reset_actions = false;            ///< `$676`
+  /// `$N7=` carries its block out and says ok, though it is kept nowhere (gnea/grbl system.c).
+  bool runs_lines_it_cannot_store = false;
 };
 
 /// How status reports come about.
@@ -253,6 +255,7 @@ struct Personality {
   bool tool_length_stays_metric = false;  ///< `[TLO:]` in spite of `$13`
   bool parameters_pause = false;          ///< Rabbit waits 100 ms before the ok of `$#`
   bool stored_writes_synchronise = false;
+  bool checks_whole_arcs = false;         ///< an arc whose end lies outside the travel does not even begin
   bool has_work_offset_sync_bit = false;  ///< `$10` bit 8; otherwise every change of WCO waits for the motion
   bool soft_limits_in_check = false;
   bool skips_empty_dwell = false;  ///< a dwell of no time does not even wait for the motion

@@ -36,6 +36,8 @@ struct PlanArc {
   gcode::ArcMove move{};
   vocabulary::AxisValues start_mm{};
   std::optional<motion::ArcChords> chords{};
+  /// Where the chord that waits for room ends.
+  std::optional<vocabulary::AxisValues> chord{};
 };
 /// Queues a jog and starts it.
 struct PlanJog {
@@ -84,6 +86,11 @@ struct Restart {};
 struct CheckAtStart {};
 /// Runs `$N0` and `$N1`.
 struct RunStartupLines {};
+/// `$N0=`: its block has been carried out, so it is worth keeping.
+struct KeepStartupLine {
+  std::size_t index = 0;
+  std::string line{};
+};
 struct RunStartupBlock {
   std::string block{};
 };
@@ -101,10 +108,10 @@ struct FinishHoming {
   vocabulary::AxisMask asked = 0;  ///< 0: all
 };
 
-using Step =
-    std::variant<Answer, Say, SayStatus, SayProbe, PlanMove, PlanArc, PlanJog, Synchronize, Dwell, Freeze, Perform,
-                 HoldForCycleStart, Probe, HomeAxes, RaiseAlarm, StopAtSoftLimit, EnterCritical, Restart, CheckAtStart,
-                 RunStartupLines, RunStartupBlock, BeginFileJob, EndFileJob, EnterSleep, EnterToolChange, FinishHoming>;
+using Step = std::variant<Answer, Say, SayStatus, SayProbe, PlanMove, PlanArc, PlanJog, Synchronize, Dwell, Freeze,
+                          Perform, HoldForCycleStart, Probe, HomeAxes, RaiseAlarm, StopAtSoftLimit, EnterCritical,
+                          Restart, CheckAtStart, RunStartupLines, KeepStartupLine, RunStartupBlock, BeginFileJob,
+                          EndFileJob, EnterSleep, EnterToolChange, FinishHoming>;
 
 /// What the foreground is waiting for, to be looked at.
 enum class WaitingFor : std::uint8_t {

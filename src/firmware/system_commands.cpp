@@ -286,8 +286,12 @@ SystemCommands::Result SystemCommands::store_user_text(const ParsedCommand& comm
 }
 
 SystemCommands::Result SystemCommands::store_startup_line(const ParsedCommand& command, Steps& steps) {
-  const auto index = base::parse_int<std::size_t>(command.key);
-  if (!index || *index >= board_.stored.startup_lines.size()) return std::unexpected(ErrorCode::InvalidStatement);
+  const std::size_t lines = board_.stored.startup_lines.size();
+  const auto index = base::parse_int<int>(command.key);
+  const bool exists = index && *index >= 0 && static_cast<std::size_t>(*index) < lines;
+  if (!exists && !board_.personality.start.runs_lines_it_cannot_store) {
+    return std::unexpected(ErrorCode::InvalidStatement);
+  }
   constexpr StateSet kStoring = {MachineState::Idle, MachineState::Alarm, MachineState::Check};
   if (!command.value.empty() && !kStoring.contains(board_.state)) return std::unexpected(ErrorCode::IdleError);
   const bool says_invalid = board_.personality.names_settings;
@@ -306,8 +310,8 @@ SystemCommands::Result SystemCommands::store_startup_line(const ParsedCommand& c
       return says_invalid ? std::unexpected(ErrorCode::SettingTextInvalid) : added;
     }
   }
-  board_.stored.startup_lines.at(*index) = line;
-  board_.store_settings();
+  if (board_.personality.stored_writes_synchronise) steps.emplace_back(Synchronize{});
+  if (exists) steps.emplace_back(KeepStartupLine{.index = static_cast<std::size_t>(*index), .line = line});
   return {};
 }
 

@@ -1,6 +1,7 @@
 #include "simulation/case_runner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <optional>
 #include <string_view>
@@ -20,7 +21,12 @@ using firmware::VirtualController;
 
 constexpr std::string_view kSoftReset = "\x18";
 /// No case takes longer; what is unanswered by then stays so.
-constexpr Duration kMostTime = 600s;
+constexpr Duration kMostTime = 3600s;
+/// Ten bits at 115200 baud.
+constexpr Duration kByteTime{86'806};
+/// They count as offsets whoever asked for them: a probe move prints the last one by itself.
+constexpr std::array<std::string_view, 14> kOffsetNames = {"G54",   "G55",   "G56", "G57", "G58", "G59", "G59.1",
+                                                           "G59.2", "G59.3", "G28", "G30", "G92", "TLO", "PRB"};
 /// Resets that one case may need; a machine that waits again after so many is left alone.
 constexpr int kMostResets = 8;
 
@@ -81,7 +87,7 @@ class CaseRun {
     while (now_ <= limit) {
       if (standstill.lasts(controller_, next_)) return;
       if (send_next()) continue;
-      const Instant next = std::min(controller_.next_deadline(), next_injection());
+      const Instant next = std::min({controller_.next_deadline(), next_injection(), next_byte()});
       if (is_answered() && controller_.next_deadline() == kNever) return;
       if (next == kNever) {
         if (resets_ == kMostResets) return;
@@ -92,6 +98,7 @@ class CaseRun {
       controller_.advance_to(now_);
       inject();
       listen();
+      transmit();
     }
   }
 
@@ -109,11 +116,26 @@ class CaseRun {
   bool send_next() {
     if (awaits_answer_ || next_ == lines_.size()) return false;
     awaits_answer_ = true;
-    controller_.on_bytes(now_, lines_[next_].text + "\n");
+    wire_ = lines_[next_].text + "\n";
+    on_wire_ = 0;
+    byte_at_ = now_;
     ++next_;
+    transmit();
+    return true;
+  }
+
+  /// When the next byte of the line arrives, as far as the controller has room for it.
+  [[nodiscard]] Instant next_byte() const {
+    return on_wire_ < wire_.size() && controller_.receive_room() > 0 ? std::max(byte_at_, now_) : kNever;
+  }
+
+  void transmit() {
+    if (next_byte() > now_) return;
+    controller_.on_bytes(now_, std::string_view{wire_}.substr(on_wire_, 1));
+    ++on_wire_;
+    byte_at_ = now_ + kByteTime;
     controller_.advance_to(now_);
     listen();
-    return true;
   }
 
   void reset() {
@@ -165,6 +187,7 @@ class CaseRun {
   /// A reset swallows the line in flight. The next one is sent as soon as an answer arrives, so an answer that comes
   /// just ahead of a reset costs that line.
   void lose_line() {
+    on_wire_ = wire_.size();
     if (was_answered_now_ && next_ < lines_.size()) {
       ++next_;
       awaits_answer_ = true;
@@ -176,17 +199,28 @@ class CaseRun {
   }
 
   bool hear_bracket(std::string_view line) {
-    const bool answers_query = next_ > asked_.lines.size() && began_;
+    const bool answers_query = next_ > asked_.lines.size() && awaits_answer_ && lines_[next_ - 1].text == "$#";
+    const std::size_t colon = line.find(':');
+    const bool has_name = line.starts_with('[') && line.ends_with(']') && colon != std::string_view::npos;
+    const std::string_view name = has_name ? line.substr(1, colon - 1) : std::string_view{};
+    if (!began_) return false;
     if (line.starts_with("[GC:")) {
       record_.parser_state = line;
-    } else if (answers_query && awaits_answer_ && lines_[next_ - 1].text == "$#" && line.starts_with('[') &&
-               line.ends_with(']') && line.contains(':')) {
-      const std::size_t colon = line.find(':');
-      record_.offsets.emplace_back(line.substr(1, colon - 1), line.substr(colon + 1, line.size() - colon - 2));
+    } else if (has_name && (answers_query || std::ranges::find(kOffsetNames, name) != kOffsetNames.end())) {
+      keep_offset(name, line.substr(colon + 1, line.size() - colon - 2));
     } else {
       note(line);
     }
     return false;
+  }
+
+  void keep_offset(std::string_view name, std::string_view value) {
+    const auto known = std::ranges::find(record_.offsets, name, [](const auto& pair) { return pair.first; });
+    if (known != record_.offsets.end()) {
+      known->second = value;
+    } else {
+      record_.offsets.emplace_back(name, value);
+    }
   }
 
   bool note(std::string_view line) {
@@ -210,6 +244,10 @@ class CaseRun {
   std::vector<SentLine> lines_;
   std::size_t next_ = 0;
   std::size_t injected_ = 0;
+  /// The line under way, how much of it has arrived, and when the next byte may.
+  std::string wire_;
+  std::size_t on_wire_ = 0;
+  Instant byte_at_{};
   int resets_ = 0;
   bool awaits_answer_ = false;
   bool was_answered_now_ = false;

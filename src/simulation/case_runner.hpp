@@ -39,7 +39,8 @@ struct CaseRecord {
   std::vector<std::string> alarms;
   /// The last `[GC:…]` line; empty if there was none.
   std::string parser_state;
-  /// What `$#` printed: name, and everything between the first colon and the closing bracket.
+  /// What `$#` printed, in the end or in a line, and what a probe move printed by itself: name, and everything between
+  /// the first colon and the closing bracket.
   std::vector<std::pair<std::string, std::string>> offsets;
   std::vector<std::int32_t> position_steps;
   std::vector<double> position_mm;
@@ -54,10 +55,11 @@ struct CaseMachine {
   std::vector<firmware::WorkcellEvent> workcell{};
 };
 
-/// Runs one case as the recordings of real firmware were made. Each line is sent when the one before is answered, and
-/// `$G` and `$#` follow in the same way: Grbl and Rabbit refuse `$#` while the axes still move, and `offsets` is empty
-/// then. An alarm of Grbl or Rabbit is reset at once, a machine that waits for nothing in sight as well; the line that
-/// a reset swallows is `lost`, and the next one follows the welcome. The position is read when all motion has ended.
+/// Runs one case as the recordings of real firmware were made. Each line is sent when the one before is answered, at
+/// 115200 baud, and `$G` and `$#` follow in the same way: Grbl and Rabbit refuse `$#` while the axes still move, and
+/// `offsets` is empty then. An alarm of Grbl or Rabbit is reset at once, a machine that waits for nothing in sight as
+/// well; the line that a reset swallows is `lost`, and the next one follows the welcome. The position is read when all
+/// motion has ended.
 [[nodiscard]] CaseRecord run_case(const InterpreterCase& asked, const CaseMachine& machine);
 
 }  // namespace kerf::simulation

@@ -54,5 +54,34 @@ TEST(CaseRunner, SetupLeavesNoAnswers) {
   EXPECT_TRUE(record.messages.empty());
 }
 
+TEST(CaseRunner, AProbeMovePrintsAnOffsetByItself) {
+  const auto record = run_case({.id = "a", .lines = {"G0Z5", "G38.3Z-1F200", "G0Z5"}}, machine_of(Firmware::Grbl));
+  ASSERT_EQ(record.offsets.size(), 1U);
+  EXPECT_EQ(record.offsets.front().first, "PRB");
+  EXPECT_EQ(record.offsets.front().second, "0.000,0.000,-1.000:0");
+}
+
+TEST(CaseRunner, GrblCarriesOutStartupLinesThatItCannotKeep) {
+  const auto record =
+      run_case({.id = "a", .lines = {"$N7=G20", "$N1=G0X", "$N0=G0X1", "$N"}}, machine_of(Firmware::Grbl));
+  EXPECT_EQ(record.answers, (std::vector<std::string>{"ok", "error:2", "ok", "ok"}));
+  EXPECT_EQ(record.messages, (std::vector<std::string>{"$N0=G0X1", "$N1="}));
+  EXPECT_EQ(record.parser_state.substr(0, 23), "[GC:G0 G54 G17 G20 G90 ");
+}
+
+TEST(CaseRunner, GrblMindsTheSignBeforeTheSettingsNumber) {
+  const auto record = run_case({.id = "a", .lines = {"$200=-1", "$200=1", "$300=-1"}}, machine_of(Firmware::Grbl));
+  EXPECT_EQ(record.answers, (std::vector<std::string>{"error:4", "error:3", "error:3"}));
+}
+
+TEST(CaseRunner, ChordsBeforeTheSoftLimitStillMoveOnGrbl) {
+  const std::vector<std::string> setup = {"$100=80",  "$101=80",  "$110=5000", "$111=5000", "$120=310",
+                                          "$121=290", "$11=0.02", "$1=255",    "$130=10",   "$131=10",
+                                          "$132=10",  "$22=1",    "$20=1",     "$12=0.002"};
+  const auto record = run_case({.id = "a", .lines = {"G2X-20I-10F200"}, .setup = setup}, machine_of(Firmware::Grbl));
+  EXPECT_EQ(record.alarms, std::vector<std::string>{"ALARM:2"});
+  EXPECT_EQ(record.position_steps, (std::vector<std::int32_t>{-346, -658, 0}));
+}
+
 }  // namespace
 }  // namespace kerf::simulation

@@ -17,6 +17,7 @@ namespace {
 using firmware::VirtualController;
 
 constexpr std::int64_t kBitsPerByte = 10;
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 /// What a careful sender has under way at most (interpreter-cases.md).
 constexpr std::size_t kWindow = 127;
 constexpr std::size_t kGrblHalWindow = 900;
@@ -70,7 +71,8 @@ class Feeder {
     const bool was_waiting = sent_ == allowed_;
     find_next_line();
     if (was_waiting && sent_ < allowed_ && byte_at_ < now) {
-      line_began_ = now;
+      // The byte that begins now has arrived when its ten bits have.
+      line_began_ = now + byte_time();
       bytes_on_line_ = 0;
       place_next_byte();
     }
@@ -82,7 +84,6 @@ class Feeder {
   /// A line may follow when all of it fits into the window.
   void find_next_line() {
     if (!link_.baud) return;
-    if (byte_at_ == Instant{}) place_next_byte();
     while (allowed_ < bytes_.size()) {
       const std::size_t length = bytes_.find('\n', allowed_) + 1 - allowed_;
       if (under_way_ != 0 && under_way_ + length > window_) return;
@@ -92,9 +93,11 @@ class Feeder {
     }
   }
 
+  [[nodiscard]] Duration byte_time() const { return Duration{kBitsPerByte * kNanosecondsPerSecond / *link_.baud}; }
+
+  /// Time zero is the instant at which the first byte has arrived.
   void place_next_byte() {
-    constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-    byte_at_ = line_began_ + Duration{(bytes_on_line_ + 1) * kBitsPerByte * kNanosecondsPerSecond / *link_.baud};
+    byte_at_ = line_began_ + Duration{bytes_on_line_ * kBitsPerByte * kNanosecondsPerSecond / *link_.baud};
   }
 
   std::string bytes_;

@@ -122,6 +122,7 @@ const Personality kGrblHal = {
     .reads_lines_in_sleep = true,
     .sleep_needs_setting = true,
     .interrupted_program_ends = true,
+    .checks_whole_arcs = true,
     .has_work_offset_sync_bit = true,
     .loop = {.pass = std::chrono::microseconds{10}, .for_line = 1, .for_block = 2, .to_start = 1},
     .parse_command = parse_command_grblhal,
