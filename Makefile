@@ -7,7 +7,7 @@ PEER ?=
 # How long `make test` runs each fuzz target.
 KERF_FUZZ_SECONDS ?= 20
 
-.PHONY: run build test bench tidy format lint clean
+.PHONY: run build test bench docs tidy format lint clean
 
 # A part of about four minutes, cut by the built-in virtual grblHAL ten times as fast.
 run: build
@@ -39,6 +39,11 @@ ifeq ($(PEER),)
 else
 	unshare --map-root-user --net sh -c 'ip link set lo up && exec $(BENCH) --peer $(PEER)'
 endif
+
+# The tables of docs/protocol, from the code.
+docs: build
+	cmake --build --preset release --target vocabulary -j $(JOBS)
+	build/release/tools/vocabulary/vocabulary docs/protocol/tables
 
 # The rules of docs/architecture.md, in a second.
 tidy:
