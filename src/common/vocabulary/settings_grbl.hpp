@@ -4,6 +4,7 @@
 #include <array>
 
 #include "common/vocabulary/settings.hpp"
+#include "common/vocabulary/settings_axes.hpp"
 #include "common/vocabulary/settings_texts.hpp"
 
 namespace kerf::vocabulary::tables {
@@ -87,46 +88,10 @@ inline constexpr std::array kGrblSettings{
         30, 6, "Maximum spindle speed", "RPM", SettingType::Decimal, "#####0", {}, {}, "1000", texts::kSpindleMax},
     SettingRow{31, 6, "Minimum spindle speed", "RPM", SettingType::Decimal, "#####0", {}, {}, "0", texts::kSpindleMin},
     SettingRow{32, 6, "Laser mode enable", "", SettingType::Bool, "", {}, {}, "0", texts::kLaserMode},
-    per_axis({100,
-              43,
-              "-axis travel resolution",
-              "step/mm",
-              SettingType::Decimal,
-              "#####0.000",
-              {},
-              {},
-              "250.000",
-              texts::kStepsPerMm}),
-    per_axis({110,
-              43,
-              "-axis maximum rate",
-              "mm/min",
-              SettingType::Decimal,
-              "#####0.000",
-              {},
-              {},
-              "500.000",
-              texts::kMaxRate}),
-    per_axis({120,
-              43,
-              "-axis acceleration",
-              "mm/sec^2",
-              SettingType::Decimal,
-              "#####0.000",
-              {},
-              {},
-              "10.000",
-              texts::kAcceleration}),
-    per_axis({130,
-              43,
-              "-axis maximum travel",
-              "mm",
-              SettingType::Decimal,
-              "#####0.000",
-              {},
-              {},
-              "200.000",
-              texts::kMaxTravel}),
+    steps_per_mm_row("#####0.000", "250.000"),
+    kMaxRateRow,
+    kAccelerationRow,
+    kMaxTravelRow,
 };
 
 }  // namespace kerf::vocabulary::tables
