@@ -42,8 +42,10 @@ Travel travel_of(const Board& board, int axis) {
   const auto length = static_cast<float>(board.settings.number(setting::kMaxTravel, axis));
   const bool homes_to_minus = board.settings.flag(setting::kHomingDirection, static_cast<unsigned>(axis));
   switch (board.personality.homing.travel) {
-    case TravelRule::MirroredByDirection:
-      return homes_to_minus ? Travel{.min = 0, .max = length} : Travel{.min = -length, .max = 0};
+    case TravelRule::MirroredByDirection: {
+      const float at = board.switch_position_mm(axis);
+      return homes_to_minus ? Travel{.min = at, .max = at + length} : Travel{.min = at - length, .max = at};
+    }
     case TravelRule::HomedEnvelope: {
       const float pull_off = board.settings.flag(setting::kHardLimits)
                                  ? static_cast<float>(board.settings.number(setting::kHomingPullOff))
@@ -90,10 +92,26 @@ void Board::plan(const AxisValues& target_mm, const gcode::Feed& feed) {
   ++blocks_planned;
   be_busy(personality.loop.for_block);
   block_targets_mm.at(blocks_planned % kMostBlocks) = target_mm;
-  const auto added = planner.plan({.target_mm = target_mm, .feed = feed, .source_line = blocks_planned});
+  plan_line({.target_mm = target_mm, .feed = feed, .source_line = blocks_planned});
+}
+
+void Board::plan_line(const motion::PathLine& line) {
+  const auto added = planner.plan(line);
   if (motion_log && added == motion::Planner::Added::Queued) {
     motion_log->planned(lines_read, planner.at(planner.block_count() - 1));
   }
+}
+
+std::optional<AxisValues> Board::note_turn(const AxisValues& target_mm) {
+  if (!personality.takes_up_backlash) return std::nullopt;
+  return backlash.turn_to(target_mm, settings.axis_values(setting::kBacklash));
+}
+
+void Board::plan_take_up(const AxisValues& target_mm, const gcode::Feed& feed) {
+  gcode::Feed fast = feed;
+  fast.rapid = fast.inverse_time = fast.no_override = false;
+  fast.rate_mm_per_min = Backlash::kFeedMmPerMin;
+  plan_line({.target_mm = target_mm, .feed = fast, .source_line = blocks_planned, .is_backlash = true});
 }
 
 void Board::say(const protocol::Message& message) {
@@ -177,6 +195,12 @@ AxisMask Board::homing_axes() const {
   AxisMask axes = 0;
   for (const AxisMask cycle : homing_cycles()) axes = static_cast<AxisMask>(axes | cycle);
   return axes;
+}
+
+float Board::switch_position_mm(int axis) const {
+  if (!personality.names_settings) return 0.0F;
+  const std::string name = std::string(1, vocabulary::kAxisLetters[static_cast<std::size_t>(axis)]) + "/Home/Mpos";
+  return static_cast<float>(settings.number(name));
 }
 
 bool Board::is_within_travel(const AxisValues& target_mm) const {

@@ -15,6 +15,7 @@
 #include "common/vocabulary/alarms.hpp"
 #include "common/vocabulary/machine_state.hpp"
 #include "common/vocabulary/messages.hpp"
+#include "firmware/backlash.hpp"
 #include "firmware/card_slot.hpp"
 #include "firmware/equipment.hpp"
 #include "firmware/file_job.hpp"
@@ -140,6 +141,7 @@ struct Board {
 
   /// Lines that were read since power-on.
   std::uint32_t lines_read = 0;
+  Backlash backlash;
   /// Kept only if the owner asked for it.
   std::optional<MotionLog> motion_log;
 
@@ -149,6 +151,10 @@ struct Board {
   void be_busy(int passes) { busy_until = std::max(busy_until, now) + passes * personality.loop.pass; }
   /// Queues one line; the planner must have room.
   void plan(const AxisValues& target_mm, const gcode::Feed& feed);
+  /// Where the move ends that takes up the play of axes that turn round on the way to `target_mm`, if there is any.
+  [[nodiscard]] std::optional<AxisValues> note_turn(const AxisValues& target_mm);
+  /// Queues that move; it is not counted as a change of position.
+  void plan_take_up(const AxisValues& target_mm, const gcode::Feed& feed);
   void say(const protocol::Message& message);
   void say(vocabulary::FeedbackText text);
   /// State Alarm; false if this alarm was in force already and is not printed again.
@@ -170,6 +176,8 @@ struct Board {
   [[nodiscard]] std::vector<AxisMask> homing_cycles() const;
   /// False if `target` leaves the travel that `$20` guards.
   [[nodiscard]] bool is_within_travel(const AxisValues& target_mm) const;
+  /// Where an axis' homing switch is: zero, or where its setting says (Rabbit).
+  [[nodiscard]] float switch_position_mm(int axis) const;
   /// The nearest target within travel (grblHAL `$40`).
   [[nodiscard]] AxisValues clipped_to_travel(const AxisValues& target_mm) const;
   /// Spindle speed with override and limits; 0 when off.
@@ -197,6 +205,8 @@ struct Board {
   void load_offsets();
 
  private:
+  void plan_line(const motion::PathLine& line);
+
   Workcell::Geometry geometry_;
   bool guards_hard_limits_ = false;
 };

@@ -104,6 +104,8 @@ class Foreground {
   /// True if the target is fine; otherwise the soft limit alarm is under way.
   bool check_travel(const AxisValues& target_mm);
   bool has_planner_room();
+  /// Queues a line, and the take-up of backlash before it; false while that has to wait for room.
+  bool plan_when_room(const AxisValues& target_mm, const gcode::Feed& feed);
   void fail(vocabulary::AlarmCode code);
   void enter_critical_alarm(vocabulary::AlarmCode code);
   bool begin_probe(Probe& step);
@@ -129,6 +131,9 @@ class Foreground {
   std::optional<Instant> until_;
   bool in_line_ = false;
   bool is_frozen_ = false;
+  /// The line that waits for room has been told to the backlash, and what is to be taken up before it.
+  bool turn_noted_ = false;
+  std::optional<AxisValues> take_up_mm_;
   ErrorCode last_error_ = ErrorCode::Ok;
   bool status_wanted_ = false;
   AxisMask last_limits_ = 0;

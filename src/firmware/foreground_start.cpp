@@ -67,6 +67,9 @@ bool Foreground::operator()(Restart& /*step*/) {
   board_.interpreter.offsets().probe = {};
   board_.interpreter.offsets().probe_succeeded = false;
   board_.flush_motion();
+  board_.backlash.forget(board_.position_mm());
+  turn_noted_ = false;
+  take_up_mm_.reset();
   board_.apply_settings();
   board_.apply_overrides();
   board_.set_accessories({});

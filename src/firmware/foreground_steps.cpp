@@ -65,12 +65,24 @@ bool Foreground::has_planner_room() {
   return !board_.planner.is_full();
 }
 
+bool Foreground::plan_when_room(const AxisValues& target_mm, const gcode::Feed& feed) {
+  if (!turn_noted_) take_up_mm_ = board_.note_turn(target_mm);
+  turn_noted_ = true;
+  if (take_up_mm_) {
+    if (!has_planner_room()) return false;
+    board_.plan_take_up(*std::exchange(take_up_mm_, std::nullopt), feed);
+  }
+  if (!has_planner_room()) return false;
+  board_.plan(target_mm, feed);
+  turn_noted_ = false;
+  return true;
+}
+
 bool Foreground::operator()(PlanMove& step) {
   if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
   if (!check_travel(step.move.target_mm)) return true;
   if (board_.state == MachineState::Check) return true;
-  if (!has_planner_room()) return wait_for(WaitingFor::PlannerRoom);
-  board_.plan(step.move.target_mm, step.move.feed);
+  if (!plan_when_room(step.move.target_mm, step.move.feed)) return wait_for(WaitingFor::PlannerRoom);
   return true;
 }
 
@@ -101,8 +113,7 @@ bool Foreground::operator()(PlanArc& step) {
     if (!step.chord || !check_travel(*step.chord)) return true;
     if (board_.state != MachineState::Check) {
       if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
-      if (!has_planner_room()) return wait_for(WaitingFor::PlannerRoom);
-      board_.plan(*step.chord, feed);
+      if (!plan_when_room(*step.chord, feed)) return wait_for(WaitingFor::PlannerRoom);
     }
     step.chord.reset();
   }
@@ -110,8 +121,7 @@ bool Foreground::operator()(PlanArc& step) {
 
 bool Foreground::operator()(PlanJog& step) {
   if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
-  if (board_.planner.is_full()) return wait_for(WaitingFor::PlannerRoom);
-  board_.plan(step.move.target_mm, step.move.feed);
+  if (!plan_when_room(step.move.target_mm, step.move.feed)) return wait_for(WaitingFor::PlannerRoom);
   board_.interpreter.sync_position(step.move.target_mm);
   cycle_.start_jog();
   return true;
@@ -232,7 +242,7 @@ bool Foreground::begin_probe(Probe& step) {
     return true;
   }
   if (!check_travel(step.move.target_mm)) return true;
-  board_.plan(step.move.target_mm, step.move.feed);
+  static_cast<void>(plan_when_room(step.move.target_mm, step.move.feed));  // the queue is empty
   static_cast<void>(cycle_.take_contacts());
   if (const auto surface = board_.workcell.surface_step(board_.geometry())) {
     board_.executor.watch({.axis = vocabulary::Axis::Z,
@@ -271,6 +281,7 @@ bool Foreground::finish_probe(const AxisSteps& contact, bool touched, const gcod
   board_.probing = false;
   board_.executor.clear_watches();
   board_.flush_motion();
+  board_.backlash.stand_at(board_.position_mm());
   gcode::Offsets& offsets = board_.interpreter.offsets();
   offsets.probe = board_.to_mm(contact);
   offsets.probe_succeeded = touched;
@@ -301,6 +312,7 @@ bool Foreground::operator()(HomeAxes& step) {
 
 bool Foreground::operator()(FinishHoming& step) {
   board_.sync_position();
+  board_.backlash.forget(board_.position_mm());
   if (status_wanted_) reporter_.say_status(receiver_.free());
   status_wanted_ = false;
   board_.state = MachineState::Idle;

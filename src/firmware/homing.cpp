@@ -25,6 +25,7 @@ void Homing::begin(AxisMask axes) {
     if (!has(axes, axis)) continue;
     const auto travel = static_cast<float>(board_.settings.number(setting::kMaxTravel, axis));
     distance_mm_ = std::max(distance_mm_, rules.search_scalar * travel);
+    if (distance_mm_ == 0.0F) distance_mm_ = rules.endless_search_mm;
   }
   rate_mm_per_min_ = static_cast<float>(board_.settings.number(setting::kHomingSeek));
   begin_move();
@@ -129,12 +130,16 @@ void Homing::set_position() {
     const bool to_minus = board_.settings.flag(setting::kHomingDirection, static_cast<unsigned>(axis));
     float mm = to_minus ? -travel + pull_off : -pull_off;
     // Rabbit's space is mirrored on axes that home towards minus (motion.md 1.6).
-    if (to_minus && board_.personality.homing.travel == TravelRule::MirroredByDirection) mm = pull_off;
+    if (board_.personality.homing.travel == TravelRule::MirroredByDirection) {
+      mm = board_.switch_position_mm(axis) + (to_minus ? pull_off : -pull_off);
+    }
     if (board_.personality.homing.tracks_axes && board_.settings.flag(setting::kHoming, homing_bit::kOriginZero)) {
       mm = 0;
     }
     board_.home_position_mm.at(at) = mm;
-    position.at(at) = static_cast<std::int32_t>(std::lround(mm * board_.planner.settings().steps_per_mm.at(at)));
+    const float steps = mm * board_.planner.settings().steps_per_mm.at(at);
+    position.at(at) =
+        static_cast<std::int32_t>(board_.personality.homing.cuts_position ? std::trunc(steps) : std::round(steps));
   }
   board_.executor.set_position(position);
   board_.planner.sync_position(position);

@@ -151,8 +151,10 @@ struct HomingRules {
   int cycle_settings = 0;
   /// Setting with the number of locate passes; 0 where it is 1.
   int passes_setting = 0;
-  float search_scalar = 1.5F;  ///< times the longest travel
-  float locate_scalar = 5.0F;  ///< times the pull-off
+  float search_scalar = 1.5F;      ///< times the longest travel
+  float locate_scalar = 5.0F;      ///< times the pull-off
+  float endless_search_mm = 0.0F;  ///< as far as a lone axis without travel goes (Rabbit)
+  bool cuts_position = false;      ///< the homed position is cut to whole steps, not rounded (Rabbit)
   /// Says `<Home...>` and waits 100 ms before it moves, and `[MSG:]` when done.
   bool announces = false;
   /// Counts which axes are homed; soft limits then only hold for those.
@@ -238,6 +240,7 @@ struct Personality {
   bool names_settings = false;
   /// Rabbit waits after it has switched the spindle (`$37`, `$38`) or a coolant on (`$60`, `$61`).
   bool waits_after_switching = false;
+  bool takes_up_backlash = false;  ///< Rabbit: `$180` on
   /// `$22`=0 takes `$20` back.
   bool soft_limits_need_homing = true;
   bool tells_build_at_length = false;    ///< `$I` says as much as `$I+`

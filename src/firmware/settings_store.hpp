@@ -106,6 +106,7 @@ inline constexpr int kStepsPerMm = 100;
 inline constexpr int kMaxRate = 110;
 inline constexpr int kAcceleration = 120;
 inline constexpr int kMaxTravel = 130;
+inline constexpr int kBacklash = 180;  // Rabbit
 // grblHAL only.
 inline constexpr int kG73Retract = 28;
 inline constexpr int kLegacyRealtime = 39;
