@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/base/text.hpp"
+#include "firmware/leading_number.hpp"
 
 namespace kerf::firmware {
 
@@ -93,7 +94,14 @@ std::expected<void, ErrorCode> SettingsStore::write(std::string_view key, std::s
   }
   auto checked = personality_.check_setting(*this, slot->match, text);
   if (!checked) return std::unexpected(checked.error());
-  set(slot->match, std::move(*checked));
+  const SettingMatch match = slot->match;
+  set(match, std::move(*checked));
+  // What acts is what was written, not what is left of it in print.
+  const auto exact = leading_number(text);
+  if (match.row->type == SettingType::Decimal && exact) {
+    const auto row = static_cast<std::size_t>(match.row - rows_.data());
+    slots_.at(first_slot_.at(row) + static_cast<std::size_t>(match.axis)).number = static_cast<double>(exact->value);
+  }
   apply_consequences();
   return {};
 }

@@ -80,6 +80,13 @@ TEST(SettingsStore, SoftLimitsGoWithHoming) {
   EXPECT_EQ(store.find("20")->text, "0");
 }
 
+TEST(SettingsStore, WhatWasWrittenActsWhateverIsPrinted) {
+  SettingsStore store(personality_of(Firmware::Rabbit));
+  ASSERT_TRUE(store.write("12", "0.0005"));
+  EXPECT_EQ(store.find("12")->text, "0.001");
+  EXPECT_FLOAT_EQ(store.motion().arc_tolerance_mm, 0.0005F);
+}
+
 TEST(SettingsStore, SavesOnlyWhatDiffers) {
   SettingsStore store(personality_of(Firmware::Grbl));
   ASSERT_TRUE(store.write("111", "800"));

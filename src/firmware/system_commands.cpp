@@ -310,7 +310,9 @@ SystemCommands::Result SystemCommands::store_startup_line(const ParsedCommand& c
       return says_invalid ? std::unexpected(ErrorCode::SettingTextInvalid) : added;
     }
   }
-  if (board_.personality.stored_writes_synchronise) steps.emplace_back(Synchronize{});
+  // Rabbit waits for the motion when it stores offsets only.
+  const bool waits = board_.personality.stored_writes_synchronise && !board_.personality.names_settings;
+  if (waits) steps.emplace_back(Synchronize{});
   if (exists) steps.emplace_back(KeepStartupLine{.index = static_cast<std::size_t>(*index), .line = line});
   return {};
 }
