@@ -148,8 +148,9 @@ Page dollar_page() {
       std::string name = "$" + std::string{row.name};
       if (row.needs_value && !name.ends_with('=')) name += "=…";
       if (row.takes_value && !row.needs_value) name += "[=…]";
-      table.row({code(name), std::string{text_of_command(row.command)}, states_of(row.states),
-                 tick(answers_critically && row.works_critically)});
+      std::string effect{text_of_command(row.command)};
+      if (!row.long_name.empty()) effect += " (also `$" + std::string{row.long_name} + "`)";
+      table.row({code(name), effect, states_of(row.states), tick(answers_critically && row.works_critically)});
     }
     text.append("## ").append(personality->dialect().name).append("\n\n").append(table.text()).append("\n");
   }

@@ -120,7 +120,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 107> kWords 
     {"M104", "selects a spindle, Q"},
 }};
 
-constexpr std::array<std::pair<Command, std::string_view>, 44> kCommands = {{
+constexpr std::array<std::pair<Command, std::string_view>, 49> kCommands = {{
     {Command::Help, "help"},
     {Command::ListSettings, "all settings"},
     {Command::DescribeSetting, "all settings; with a number, what that setting is"},
@@ -165,6 +165,11 @@ constexpr std::array<std::pair<Command, std::string_view>, 44> kCommands = {{
     {Command::ListNamedSettings, "all settings by name"},
     {Command::ListSettingNames, "names of the settings"},
     {Command::ListCommands, "all commands"},
+    {Command::ReadStartupLine, "one startup line"},
+    {Command::ListState, "the state in words"},
+    {Command::ReleaseMotors, "motors off, all or those of the axes named"},
+    {Command::EraseMemory, "erases the memory of settings"},
+    {Command::MemoryUse, "how full the memory of settings is"},
 }};
 
 template <typename Pairs, typename Key>
