@@ -384,7 +384,8 @@ SystemCommands::Result SystemCommands::list_codes(const ParsedCommand& command) 
     return {};
   }
   const std::string_view kind = alarms ? "alarm" : "error";
-  const auto code = base::parse_int<int>(command.value);
+  // An empty text is 0, as C's strtol reads it.
+  const auto code = command.value.empty() ? 0 : base::parse_int<int>(command.value);
   if (code && (alarms ? listing_.one_alarm(*code) : listing_.one_error(*code))) return {};
   std::string text = code ? "Unknown " : "Malformed ";
   text.append(kind).append(" number: ").append(command.value);

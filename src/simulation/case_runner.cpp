@@ -206,7 +206,8 @@ class CaseRun {
     if (!began_) return false;
     if (line.starts_with("[GC:")) {
       record_.parser_state = line;
-    } else if (has_name && (answers_query || std::ranges::find(kOffsetNames, name) != kOffsetNames.end())) {
+    } else if (has_name && name != "MSG" &&
+               (answers_query || std::ranges::find(kOffsetNames, name) != kOffsetNames.end())) {
       keep_offset(name, line.substr(colon + 1, line.size() - colon - 2));
     } else {
       note(line);

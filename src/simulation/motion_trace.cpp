@@ -21,6 +21,7 @@ constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 /// What a careful sender has under way at most (interpreter-cases.md).
 constexpr std::size_t kWindow = 127;
 constexpr std::size_t kGrblHalWindow = 900;
+constexpr std::size_t kRoomForRealtime = 32;
 
 std::size_t window_of(vocabulary::Firmware firmware) {
   return firmware == vocabulary::Firmware::GrblHal ? kGrblHalWindow : kWindow;
@@ -120,6 +121,7 @@ class TraceRun {
         controller_(machine.personality, machine.stored),
         feeder_(as_sent(run.program), run.link, window_of(machine.personality.firmware)) {
     for (const auto& event : machine.workcell) controller_.submit(now_, event);
+    if (machine.personality.full_buffer_drops_realtime) kept_free_ = kRoomForRealtime;
     controller_.power_on(now_);
     controller_.advance_to(now_);
     static_cast<void>(controller_.take_outbox());
@@ -168,7 +170,8 @@ class TraceRun {
   void feed() {
     for (;;) {
       listen();
-      const std::string_view bytes = feeder_.take(now_, controller_.receive_room());
+      const std::size_t room = controller_.receive_room();
+      const std::string_view bytes = feeder_.take(now_, room > kept_free_ ? room - kept_free_ : 0);
       if (bytes.empty()) return;
       controller_.on_bytes(now_, bytes);
     }
@@ -238,6 +241,8 @@ class TraceRun {
 
   const ProgramRun& run_;
   VirtualController controller_;
+  /// Rabbit loses realtime bytes that meet a full buffer: a sender that keeps it full leaves room for them.
+  std::size_t kept_free_ = 0;
   Feeder feeder_;
   MotionTrace trace_;
   Instant now_{};
