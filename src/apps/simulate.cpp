@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,7 @@ std::optional<ProgramRun> load_run(const SimulateOptions& options) {
   return run;
 }
 
-std::string joined(const std::vector<std::int32_t>& steps) {
+std::string joined(std::span<const std::int32_t> steps) {
   std::string text;
   for (const std::int32_t count : steps) text += fmt::format(",{}", count);
   return text;
@@ -69,12 +70,12 @@ bool write(const std::string& file, const std::string& text) {
 }
 
 bool write_trace(const MotionTrace& trace, const std::string& file) {
-  std::string text =
-      "block,line,t_start,t_end,mm,rate_mm_min" + step_columns(trace.final_steps.size(), "end_step") + "\n";
+  const std::size_t axes = trace.final_steps.size();
+  std::string text = "block,line,t_start,t_end,mm,rate_mm_min" + step_columns(axes, "end_step") + "\n";
   for (std::size_t i = 0; i < trace.blocks.size(); ++i) {
     const auto& block = trace.blocks[i];
     text += fmt::format("{},{},{:.6f},{:.6f},{:.6f},{:.3f}{}\n", i, block.line, block.start_s, block.end_s,
-                        block.length_mm, block.rate_mm_per_min, joined(block.end_steps));
+                        block.length_mm, block.rate_mm_per_min, joined(std::span{block.end_steps}.first(axes)));
   }
   return write(file, text);
 }

@@ -235,7 +235,7 @@ class TraceRun {
                                .end_s = base::to_seconds(stretch.ended - Instant{}),
                                .length_mm = static_cast<double>(move.length_mm),
                                .rate_mm_per_min = static_cast<double>(move.rate_mm_per_min),
-                               .end_steps = shortened(stretch.end_steps)});
+                               .end_steps = stretch.end_steps});
     }
   }
 

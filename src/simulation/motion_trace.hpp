@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
+#include "common/vocabulary/axis.hpp"
 #include "simulation/case_runner.hpp"
 
 namespace kerf::simulation {
@@ -34,7 +35,8 @@ struct BlockTrace {
   double end_s = 0;
   double length_mm = 0;
   double rate_mm_per_min = 0;
-  std::vector<std::int32_t> end_steps;
+  /// Axes that the machine lacks stay 0; an array, because there may be millions of blocks.
+  vocabulary::AxisSteps end_steps{};
 };
 
 struct PositionSample {
