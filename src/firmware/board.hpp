@@ -25,6 +25,7 @@
 #include "firmware/settings_store.hpp"
 #include "firmware/stored_state.hpp"
 #include "firmware/workcell.hpp"
+#include "firmware/ymodem.hpp"
 
 namespace kerf::firmware {
 
@@ -103,6 +104,7 @@ struct Board {
   Equipment equipment;
   CardSlot slot;
   FileJob job;
+  YModem upload;
 
   /// The last instant that went in.
   Instant now{};

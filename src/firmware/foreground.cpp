@@ -170,6 +170,7 @@ void Foreground::reset() {
   board_.set_accessories({});
   board_.position_lost = board_.position_lost || moved;
   const bool ends_program = std::ranges::any_of(steps_, is_program_end);
+  board_.outbox.say_bytes(board_.upload.abort());
   steps_.clear();
   until_.reset();
   is_frozen_ = false;
@@ -214,6 +215,7 @@ void Foreground::enter_critical_alarm(AlarmCode code) {
 void Foreground::abandon_line() {
   const bool ends_program = std::ranges::any_of(steps_, is_program_end);
   steps_.clear();
+  board_.outbox.say_bytes(board_.upload.abort());
   if (board_.job.is_running()) {
     board_.say(protocol::Feedback{.text = file_interruption()});
     end_file_job();

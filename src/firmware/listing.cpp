@@ -246,7 +246,7 @@ std::vector<std::string> Listing::new_options() const {
   if (settings.number(setting::kMode) == 2.0) flags.emplace_back("LATHE");
   if (settings.number(setting::kToolChangeMode) != 4.0) flags.emplace_back("TC");
   flags.emplace_back("SED");
-  if (board_.slot.exists()) flags.emplace_back("SD");
+  if (board_.slot.exists()) flags.insert(flags.end(), {"SD", "YM"});
   return flags;
 }
 

@@ -26,7 +26,8 @@ struct VirtualController::Parts {
         pendant(board, receiver, reporter, foreground) {}
 
   [[nodiscard]] Instant next_deadline() const {
-    return std::min({cycle.next_deadline(), foreground.next_deadline(), pendant.next_deadline()});
+    return std::min(
+        {cycle.next_deadline(), foreground.next_deadline(), pendant.next_deadline(), board.upload.next_deadline()});
   }
 
   /// Motion, then the main loop, at one instant.
@@ -36,16 +37,27 @@ struct VirtualController::Parts {
     foreground.look_at_switches();
     foreground.settle();
     pendant.advance();
+    board.outbox.say_bytes(board.upload.advance(at));
     is_settled = true;
   }
 
   /// One byte of the wire in command.
   void take(std::uint8_t byte) {
+    if (board.slot.exists() && (board.upload.is_receiving() || YModem::begins(byte))) return take_upload(byte);
     if (receiver.full()) foreground.run();
     const auto fate = receiver.take(byte, foreground.line_context());
     if (fate == Receiver::Fate::Realtime) return act(byte);
     // `$39`=0 looks at the line that is being read, byte by byte.
     if (foreground.waiting_for() == WaitingFor::Nothing && (byte == '$' || byte == '(')) foreground.run();
+  }
+
+  /// While a file is uploaded, nothing else is heard on that wire (ymodem.c put_char).
+  void take_upload(std::uint8_t byte) {
+    if (!board.upload.is_receiving()) {
+      board.upload.begin(board.now, board.slot.mounted ? board.slot.card : nullptr, board.slot.folder);
+    }
+    board.outbox.say_bytes(board.upload.take(board.now, byte));
+    if (board.upload.take_purged()) receiver.cancel();
   }
 
   void act(std::uint8_t byte) {

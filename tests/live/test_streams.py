@@ -6,6 +6,7 @@ import tempfile
 import unittest
 
 from kerf_program import USAGE, VirtualMachine, kerf, wait_until
+import ymodem
 from wires import Wire
 
 
@@ -54,6 +55,63 @@ class Card(unittest.TestCase):
             wire.line("ok")
             wire.line("ok")
         self.assertEqual(os.listdir(self.folder.name), [])
+
+    def uploader(self):
+        wire = Wire(self.machine().port)
+        self.addCleanup(wire.socket.close)
+        wire.send(b"$FM\n")
+        wire.line("ok")
+        return wire
+
+    def landed(self, name):
+        with open(os.path.join(self.folder.name, name), "rb") as file:
+            return file.read()
+
+    def test_an_upload_lands_byte_for_byte(self):
+        wire = self.uploader()
+        # Realtime bytes, cancels and ends of text are data here.
+        data = bytes(range(256)) * 37 + b"\x18\x18\x04?!~"
+        for name, size in (("long.nc", 1024), ("short.nc", 128)):
+            ymodem.upload(wire, name, data, size)
+            self.assertEqual(self.landed(name), data)
+        ymodem.upload(wire, "even.nc", b"G0X1\n" * 256)  # a whole number of blocks
+        wire.send(b"$F\n")
+        self.assertEqual(wire.line("[FILE:"), "[FILE:/even.nc|SIZE:1280]")
+        wire.line("ok")
+        wire.send(b"$F=even.nc\n")
+        wire.line("ok")
+        wire.line("[MSG:Pgm End]")
+
+    def test_a_damaged_block_is_sent_again(self):
+        wire = self.uploader()
+        data = b"G0X1\n" * 60
+        ymodem.deliver(wire, ymodem.block(0, b"part.nc\0" + b"300", 128), ymodem.ACK + b"C")
+        for number, piece in ymodem.blocks_of(data, 128):
+            good = ymodem.block(number, piece, 128)
+            if number == 2:
+                wire.send(good[:20] + b"\xff" + good[21:])
+                self.assertEqual(wire.take(1), ymodem.NAK)
+                wire.send(good[:3])  # a torn block
+                self.assertEqual(wire.take(1), ymodem.NAK)
+            ymodem.deliver(wire, good, ymodem.ACK)
+        ymodem.deliver(wire, ymodem.EOT, ymodem.ACK + b"C")
+        self.assertEqual(self.landed("part.nc"), data)
+
+    def test_an_aborted_upload_leaves_what_came(self):
+        wire = self.uploader()
+        ymodem.deliver(wire, ymodem.block(0, b"part.nc\0" + b"1000", 128), ymodem.ACK + b"C")
+        ymodem.deliver(wire, ymodem.block(1, b"x" * 128, 128), ymodem.ACK)
+        wire.send(ymodem.CAN * 2)
+        wire.send(b"?")
+        self.assertIn("<Idle", wire.line("<"))
+        self.assertEqual(self.landed("part.nc"), b"x" * 128)
+
+    def test_an_upload_without_a_mounted_card_is_cancelled(self):
+        wire = self.uploader()
+        wire.send(b"$FU\n")
+        wire.line("ok")
+        with self.assertRaises(ymodem.Cancelled):
+            ymodem.upload(wire, "part.nc", b"G0X1\n")
 
     def test_only_grblhal_has_a_card(self):
         for options in (["--card", self.folder.name], ["--pendant", "tcp://127.0.0.1:0"]):
