@@ -22,8 +22,9 @@ void Foreground::power_on() {
   }
   board_.cold_start = true;
   if (rules.homing_locks && board_.settings.flag(setting::kHoming)) board_.state = MachineState::Alarm;
-  auto_report_interval_ =
-      std::chrono::milliseconds{static_cast<std::int64_t>(board_.settings.number(setting::kAutoReport))};
+  if (const Duration interval = auto_report_interval(); interval > Duration::zero()) {
+    next_auto_report_ = board_.now + interval;
+  }
   steps_.emplace_back(Restart{});
   run();
 }
@@ -38,10 +39,16 @@ void Foreground::run() {
     }
   }
   if (board_.now >= next_auto_report_) {
-    next_auto_report_ = board_.now + auto_report_interval_;
+    // Started at power-up, it takes over a new period by itself, and ends for good when there is none.
+    const Duration interval = auto_report_interval();
+    next_auto_report_ = interval > Duration::zero() ? board_.now + interval : kNever;
     if (board_.auto_reporting) status_wanted_ = true;
   }
   say_wanted_status();
+}
+
+Duration Foreground::auto_report_interval() const {
+  return std::chrono::milliseconds{static_cast<std::int64_t>(board_.settings.number(setting::kAutoReport))};
 }
 
 void Foreground::settle() {

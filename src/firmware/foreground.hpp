@@ -115,6 +115,7 @@ class Foreground {
   [[nodiscard]] bool answers_status() const;
   void say_wanted_status();
   void owe_first_report();
+  [[nodiscard]] Duration auto_report_interval() const;
   void note_work_offset();
   void restore_overrides();
 
@@ -140,7 +141,6 @@ class Foreground {
   AxisSteps contact_{};
   std::uint8_t last_work_offset_ = 0;
   AxisValues last_tool_length_{};
-  Duration auto_report_interval_{};
   Instant next_auto_report_ = kNever;
 };
 

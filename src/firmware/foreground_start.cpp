@@ -29,10 +29,9 @@ void Foreground::owe_first_report() {
   if (board_.personality.status.counts_changes) {
     board_.report.overrides = board_.report.accessories = board_.report.tool_reference = true;
   }
-  if (auto_report_interval_ > Duration::zero()) {
-    board_.auto_reporting = true;
-    next_auto_report_ = board_.now + auto_report_interval_;
-  }
+  // Every reset switches them on, also if no clock runs because the period is newer than the last power-up
+  // (grblHAL grbllib.c).
+  board_.auto_reporting = auto_report_interval() > Duration::zero();
 }
 
 bool Foreground::operator()(Restart& /*step*/) {

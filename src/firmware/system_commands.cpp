@@ -164,6 +164,7 @@ SystemCommands::Result SystemCommands::write_setting(const ParsedCommand& comman
   if (command.key == std::to_string(setting::kReportInches)) board_.owe_work_offset();
   if (board_.personality.names_settings) restart_spindle_after(command, added);
   if (!board_.personality.has_extended_settings) return {};
+  if (board_.settings.number(setting::kAutoReport) == 0.0) board_.auto_reporting = false;
 
   // grblHAL settings.c: a position keeps its millimetres, a new travel makes its axis unhomed, and a new tool change
   // mode starts tool changes anew.

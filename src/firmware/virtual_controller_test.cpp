@@ -208,6 +208,31 @@ TEST(VirtualController, ToolChangeWaitsForCycleStart) {
   EXPECT_EQ(bench.state(), "Run");
 }
 
+TEST(VirtualController, ReportsByItself) {
+  StoredState stored = Bench::factory();
+  stored.settings = {{"481", "200"}};
+  Bench bench(Firmware::GrblHal, stored);
+  EXPECT_THAT(bench.wait(199ms), IsEmpty());
+  EXPECT_EQ(bench.wait(1ms).size(), 1U);
+  EXPECT_EQ(bench.wait(1s).size(), 5U);
+  EXPECT_THAT(bench.send("\x80\x05"), IsEmpty());
+  EXPECT_EQ(bench.send("?").size(), 1U);
+  EXPECT_THAT(bench.send("\x87").back(), HasSubstr("|AR:200|"));
+  bench.send("\x8C");
+  EXPECT_THAT(bench.wait(1s), IsEmpty());
+  EXPECT_THAT(bench.send("\x87").back(), HasSubstr("|AR|"));
+  // A reset switches them on again, and the clock goes on as if nothing had been.
+  bench.wait(100ms);
+  bench.send("\x18");
+  EXPECT_EQ(bench.wait(100ms).size(), 1U);
+  bench.say("$481=500");
+  bench.wait(200ms);
+  EXPECT_EQ(bench.wait(1s).size(), 2U);
+  bench.say("$481=0");
+  bench.wait(1s);
+  EXPECT_EQ(bench.controller.next_deadline(), kNever);
+}
+
 TEST(VirtualController, RemembersSettingsOffsetsAndLines) {
   StoredState stored;
   {
