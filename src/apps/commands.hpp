@@ -2,6 +2,7 @@
 // The sub-commands of `kerf`: what main() found in the command line, and one function each. Every function prints for
 // people (or JSON where asked), says errors in one sentence on standard error, and returns how the program ends.
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,13 +22,17 @@ struct RunOptions {
 
 struct VirtualOptions {
   std::string personality = "grblhal";
-  std::string listen;
-  std::string pty;
+  std::vector<std::string> listen;  ///< one for all machines, or one each
+  std::vector<std::string> ptys;    ///< the same
+  std::size_t count = 1;
   std::string speed = "1";
   std::string settings_file;
   std::string state_file;
   std::string card_folder;
   std::string pendant;
+  std::vector<std::string> scripts;
+  std::string control;
+  std::string log_file;
 };
 [[nodiscard]] ExitStatus serve_virtual(const VirtualOptions& options);
 

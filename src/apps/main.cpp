@@ -51,21 +51,47 @@ void add_run(CLI::App& kerf, Chosen& chosen) {
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::run(*options); }; });
 }
 
+void add_virtual_places(CLI::App& command, kerf::apps::VirtualOptions& options) {
+  command
+      .add_option("-l,--listen", options.listen,
+                  "Serve at this TCP address, such as tcp://127.0.0.1:5001; port 0 takes a free one")
+      ->allow_extra_args(false)
+      ->type_name("URL");
+  command
+      .add_option("--pty", options.ptys,
+                  "Serve at a pseudo-terminal with this name, for senders that only know serial ports")
+      ->allow_extra_args(false)
+      ->type_name("PATH");
+  command
+      .add_option("--count", options.count,
+                  "Be so many controllers, at ports one after the other and at PATH-1, PATH-2 …")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+}
+
+void add_virtual_play(CLI::App& command, kerf::apps::VirtualOptions& options) {
+  command
+      .add_option("--script", options.scripts,
+                  "Play this file: doors, switches, probe, power, cable and bytes that go wrong, each at its moment")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  command
+      .add_option("--control", options.control,
+                  "Take the same commands while it runs, at unix:PATH or tcp://127.0.0.1:PORT")
+      ->type_name("URL");
+  command.add_option("--log", options.log_file, "Write down everything that happens, as JSON lines; - is stderr")
+      ->type_name("FILE");
+}
+
 void add_virtual(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::VirtualOptions>();
   CLI::App* command = kerf.add_subcommand("virtual", "Be a controller: serve a virtual machine to any sender");
   command->add_option("-p,--personality", options->personality, "Which firmware to be: grbl, rabbit or grblhal")
       ->type_name("NAME")
       ->capture_default_str();
-  command
-      ->add_option("-l,--listen", options->listen,
-                   "Serve at this TCP address, such as tcp://127.0.0.1:5001; port 0 takes a free one")
-      ->type_name("URL");
-  command
-      ->add_option("--pty", options->pty,
-                   "Serve at a pseudo-terminal with this name, for senders that only know serial ports")
-      ->type_name("PATH");
-  command->add_option("--speed", options->speed, "Pace: 1 is real time, 10 ten times as fast, max without waiting")
+  add_virtual_places(*command, *options);
+  command->add_option("--speed", options->speed, "Pace: 1 is real time, 10 ten times as fast, max as fast as it can")
       ->type_name("N|max")
       ->capture_default_str();
   command->add_option("--settings", options->settings_file, "Start with the $n=value lines of this file")
@@ -83,9 +109,15 @@ void add_virtual(CLI::App& kerf, Chosen& chosen) {
           "--pendant", options->pendant,
           "Serve a pendant (MPG) there, beside the sender: tcp://127.0.0.1:5002 or pty:///tmp/pendant (grblhal)")
       ->type_name("URL");
+  add_virtual_play(*command, *options);
   command->footer(
-      "\nAny sender can connect, for example: kerf run examples/coaster.nc --machine 127.0.0.1:5001\n"
-      "One TCP client at a time; a second one is turned away while the first is connected.\n");
+      "\nExamples:\n"
+      "  kerf virtual --listen 127.0.0.1:5001                        a grblHAL for senders that know the network\n"
+      "  kerf virtual -p grbl --pty /tmp/kerf-grbl                   a Grbl for senders that know serial ports\n"
+      "  kerf virtual -l 127.0.0.1:5001 --control unix:/tmp/kerf-control\n"
+      "  echo 'door open' | nc -NU /tmp/kerf-control                    somebody opens its door\n"
+      "\nOne TCP client at a time; a second one is turned away while the first is connected.\n"
+      "All commands of scripts and of the control socket: docs/virtual_controller.md, or say 'help' there.\n");
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::serve_virtual(*options); }; });
 }
 

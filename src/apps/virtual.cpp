@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -12,13 +14,15 @@
 
 #include "apps/commands.hpp"
 #include "apps/output.hpp"
+#include "apps/virtual_machine.hpp"
 #include "firmware/personality.hpp"
 #include "firmware/stored_state.hpp"
 #include "firmware/virtual_controller.hpp"
+#include "firmware/workcell_script.hpp"
 #include "io/card_folder.hpp"
+#include "io/control_port.hpp"
 #include "io/controller_host.hpp"
 #include "io/machine_url.hpp"
-#include "io/server.hpp"
 #include "io/text_file.hpp"
 
 namespace kerf::apps {
@@ -51,16 +55,14 @@ std::string explain(const firmware::StoredStateError& error, const std::string& 
   return fmt::format("{}, line {}: {}.", file, error.line, what);
 }
 
-OrComplained<StoredState> stored_state_for(const VirtualOptions& options) {
+OrComplained<StoredState> stored_state_for(const VirtualOptions& options, const std::string& state_file) {
   StoredState state;
-  if (!options.state_file.empty()) {
-    const auto text = io::read_text_file(options.state_file);
-    if (!text && text.error().fault != io::FileFault::NotFound) {
-      return said(io::explain(text.error(), options.state_file));
-    }
+  if (!state_file.empty()) {
+    const auto text = io::read_text_file(state_file);
+    if (!text && text.error().fault != io::FileFault::NotFound) return said(io::explain(text.error(), state_file));
     if (text) {
       auto parsed = firmware::parse_stored_state(*text);
-      if (!parsed) return said(explain(parsed.error(), options.state_file));
+      if (!parsed) return said(explain(parsed.error(), state_file));
       state = *std::move(parsed);
     }
   }
@@ -74,13 +76,14 @@ OrComplained<StoredState> stored_state_for(const VirtualOptions& options) {
 }
 
 /// What the options plug into the machine.
-OrComplained<firmware::Equipment> equipment_for(const VirtualOptions& options, vocabulary::Firmware personality) {
+OrComplained<firmware::Equipment> equipment_for(const VirtualOptions& options,
+                                                const firmware::Personality& personality) {
   firmware::Equipment equipment;
   equipment.pendant = !options.pendant.empty();
   const bool wants_any = equipment.pendant || !options.card_folder.empty();
-  if (wants_any && !firmware::personality_of(personality).has_plugins) {
+  if (wants_any && !personality.has_plugins) {
     return said(
-        fmt::format("{} has {}, or choose --personality grblhal.", name_of(personality),
+        fmt::format("{} has {}, or choose --personality grblhal.", personality.dialect().name,
                     equipment.pendant ? "no second stream: leave --pendant out" : "no card slot: leave --card out"));
   }
   if (options.card_folder.empty()) return equipment;
@@ -93,144 +96,193 @@ OrComplained<firmware::Equipment> equipment_for(const VirtualOptions& options, v
   return equipment;
 }
 
-/// The terminal that `pty://PATH` or `pty:PATH` names.
-std::optional<std::string> pty_path_of(std::string_view url) {
-  constexpr std::string_view kScheme = "pty:";
-  if (!url.starts_with(kScheme)) return std::nullopt;
-  url.remove_prefix(kScheme.size());
-  if (url.starts_with("//")) url.remove_prefix(2);
-  return std::string{url};
-}
-
-/// A place where one wire of the controller can be reached: a TCP port, a pseudo-terminal, or both.
-class WireServer {
- public:
-  WireServer(io::EventLoop& loop, std::string_view who, std::function<void(std::string_view)> received)
-      : tcp_(loop, {.received = received,
-                    .connected = [](std::string_view peer) { tell(fmt::format("{} connected.", peer)); },
-                    .disconnected = [](std::string_view peer) { tell(fmt::format("{} went away.", peer)); },
-                    .turned_away =
-                        [who](std::string_view peer) {
-                          tell(fmt::format("{} was turned away: another {} is connected.", peer, who));
-                        }}),
-        pty_(loop, received) {}
-
-  OrComplained<std::string> listen(const io::TcpAddress& address) {
-    const auto listening = tcp_.listen(address);
-    if (!listening) return said(io::explain(listening.error(), io::to_string(address)));
-    return io::to_string(*listening);
-  }
-
-  OrComplained<std::string> open(const std::string& path) {
-    const auto opened = pty_.open(path);
-    if (!opened) return said(io::explain(opened.error(), path));
-    return path;
-  }
-
-  void write(std::string_view bytes) {
-    tcp_.write(bytes);
-    pty_.write(bytes);
-  }
-
- private:
-  static void tell(std::string_view sentence) {
-    put("{}\n", sentence);
-    std::fflush(stdout);
-  }
-
-  io::TcpServer tcp_;
-  io::PtyServer pty_;
-};
-
-/// Everything that serves one controller. Lives on the event loop's thread.
-class VirtualMachine {
- public:
-  VirtualMachine(io::EventLoop& loop, firmware::VirtualController controller, io::Speed speed, std::string state_file)
-      : state_file_(std::move(state_file)),
-        host_(loop, std::move(controller), speed),
-        sender_(loop, "sender", [this](std::string_view bytes) { host_.receive(bytes); }),
-        pendant_(loop, "pendant", [this](std::string_view bytes) { host_.receive_from_pendant(bytes); }) {
-    host_.on_output([this](std::string_view bytes) { sender_.write(bytes); });
-    host_.on_pendant_output([this](std::string_view bytes) { pendant_.write(bytes); });
-    host_.on_stored([this](const StoredState& state) { save(state); });
-  }
-
-  OrComplained<std::vector<std::string>> open(const std::optional<io::TcpAddress>& address, const std::string& pty) {
-    std::vector<std::string> places;
-    if (address) {
-      auto place = sender_.listen(*address);
-      if (!place) return std::unexpected(place.error());
-      places.push_back(*std::move(place));
-    }
-    if (!pty.empty()) {
-      auto place = sender_.open(pty);
-      if (!place) return std::unexpected(place.error());
-      places.push_back(*std::move(place));
-    }
-    return places;
-  }
-
-  /// `url` is an address to listen at, or a `pty:` with the name of a terminal.
-  OrComplained<std::string> open_pendant(const std::string& url) {
-    if (const auto path = pty_path_of(url)) return pendant_.open(*path);
-    const auto address = io::parse_listen_url(url);
-    if (!address) return said(io::explain(address.error()));
-    return pendant_.listen(*address);
-  }
-
-  void power_on() {
-    if (!state_file_.empty()) save(host_.controller().stored());
-    host_.power_on();
-  }
-
- private:
-  void save(const StoredState& state) {
-    if (state_file_.empty()) return;
-    const auto saved = io::replace_text_file(state_file_, firmware::print(state));
-    if (!saved) complain(io::explain(saved.error(), state_file_));
-  }
-
-  const std::string state_file_;
-  io::ControllerHost host_;
-  WireServer sender_;
-  WireServer pendant_;
-};
-
 std::string pace_text(const io::Speed& speed) {
   if (speed.is_max()) return "as fast as it can";
   return *speed.factor == 1.0 ? "in real time" : fmt::format("{} times as fast as a real one", *speed.factor);
 }
 
-ExitStatus serve(const VirtualOptions& options, vocabulary::Firmware personality, io::Speed speed,
-                 const std::optional<io::TcpAddress>& address) {
-  auto state = stored_state_for(options);
-  if (!state) return ExitStatus::Usage;
-  const auto equipment = equipment_for(options, personality);
-  if (!equipment) return ExitStatus::Usage;
-  firmware::VirtualController controller(firmware::personality_of(personality), *std::move(state), *equipment);
-  if (const auto& rejected = controller.rejected_settings(); !rejected.empty()) {
-    complain(fmt::format("{} refuses the setting{} ${}: correct {} or leave {} out.", name_of(personality),
-                         rejected.size() == 1 ? "" : "s", fmt::join(rejected, ", $"),
-                         rejected.size() == 1 ? "its value" : "their values", rejected.size() == 1 ? "it" : "them"));
-    return ExitStatus::Usage;
+/// The scripts of the command line, each under its file's name.
+struct NamedScript {
+  std::string name;
+  std::vector<firmware::ScriptLine> lines;
+};
+
+OrComplained<std::vector<NamedScript>> scripts_of(const VirtualOptions& options) {
+  std::vector<NamedScript> scripts;
+  for (const std::string& file : options.scripts) {
+    const auto text = io::read_text_file(file);
+    if (!text) return said(io::explain(text.error(), file));
+    auto lines = firmware::parse_script(*text);
+    if (!lines) {
+      return said(fmt::format("{}:{}: {}.", file, lines.error().line, firmware::explain(lines.error())));
+    }
+    scripts.push_back({.name = file, .lines = *std::move(lines)});
   }
-  io::EventLoop loop;
-  VirtualMachine machine(loop, std::move(controller), speed, options.state_file);
-  auto places = machine.open(address, options.pty);
-  if (!places) return ExitStatus::Usage;
-  const std::string first_place = places->front();
-  if (!options.pendant.empty()) {
-    const auto place = machine.open_pendant(options.pendant);
-    if (!place) return ExitStatus::Usage;
-    places->back() += fmt::format(", its pendant at {}", *place);
+  return scripts;
+}
+
+/// `path` of one machine of many: it gets the machine's number.
+std::string numbered(const std::string& path, std::size_t number, bool is_one_of_many) {
+  return path.empty() || !is_one_of_many ? path : fmt::format("{}-{}", path, number);
+}
+
+/// Where each machine serves.
+OrComplained<std::vector<MachineSetup>> setups_of(const VirtualOptions& options, io::Speed speed) {
+  const std::size_t machines = std::max({options.count, options.listen.size(), options.ptys.size()});
+  const bool is_many = machines > 1;
+  if (options.listen.empty() && options.ptys.empty()) {
+    return said("Say where to serve: --listen tcp://127.0.0.1:5001, or --pty /tmp/kerf-grblhal, or both.");
   }
-  constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
-  const io::SignalWatch signals(loop, kSignals, [&](int) { loop.stop(); });
-  machine.power_on();
-  put("A virtual {} runs {} at {}.\nTry: kerf run examples/coaster.nc --machine {}\nCtrl-C ends it.\n",
-      name_of(personality), pace_text(speed), fmt::join(*places, " and "), first_place);
+  if (is_many && !options.pendant.empty()) {
+    return said("One pendant cannot serve several machines: leave --pendant out, or --count.");
+  }
+  for (const auto& [option, given] : {std::pair{"--listen", options.listen.size()}, {"--pty", options.ptys.size()}}) {
+    if (given > 1 && given < machines) {
+      return said(fmt::format("{} is given {} times for {} machines: give it once, or once for each machine.", option,
+                              given, machines));
+    }
+  }
+  std::vector<MachineSetup> setups;
+  for (std::size_t index = 0; index < machines; ++index) {
+    MachineSetup setup{.number = index + 1,
+                       .label = is_many ? fmt::format("@{}: ", index + 1) : std::string{},
+                       .speed = speed,
+                       .address = std::nullopt,
+                       .pty = {},
+                       .pendant = options.pendant,
+                       .state_file = numbered(options.state_file, index + 1, is_many)};
+    if (!options.listen.empty()) {
+      auto address = io::parse_listen_url(options.listen[std::min(index, options.listen.size() - 1)]);
+      if (!address) return said(io::explain(address.error()));
+      const bool counts = options.listen.size() == 1 && address->port != 0;
+      const std::size_t port = address->port + (counts ? index : 0);
+      if (port > std::numeric_limits<std::uint16_t>::max()) {
+        return said(fmt::format("{} machines from port {} on need ports beyond 65535: begin lower, or use port 0.",
+                                machines, address->port));
+      }
+      address->port = static_cast<std::uint16_t>(port);
+      setup.address = *std::move(address);
+    }
+    if (!options.ptys.empty()) {
+      setup.pty = options.ptys.size() == 1 ? numbered(options.ptys.front(), index + 1, is_many) : options.ptys[index];
+    }
+    setups.push_back(std::move(setup));
+  }
+  return setups;
+}
+
+OrComplained<firmware::VirtualController> controller_for(const VirtualOptions& options,
+                                                         const firmware::Personality& personality,
+                                                         const std::string& state_file) {
+  auto state = stored_state_for(options, state_file);
+  if (!state) return std::unexpected(state.error());
+  auto equipment = equipment_for(options, personality);
+  if (!equipment) return std::unexpected(equipment.error());
+  firmware::VirtualController controller(personality, *std::move(state), *std::move(equipment));
+  const auto& rejected = controller.rejected_settings();
+  if (rejected.empty()) return controller;
+  return said(fmt::format("{} refuses the setting{} ${}: correct {} or leave {} out.", personality.dialect().name,
+                          rejected.size() == 1 ? "" : "s", fmt::join(rejected, ", $"),
+                          rejected.size() == 1 ? "its value" : "their values", rejected.size() == 1 ? "it" : "them"));
+}
+
+/// All machines of one process, on one event loop.
+class Fleet {
+ public:
+  explicit Fleet(EventLog& log) : log_(log) {}
+
+  /// False when that has been complained about.
+  bool add(firmware::VirtualController controller, const MachineSetup& setup) {
+    machines_.push_back(std::make_unique<VirtualMachine>(loop_, std::move(controller), setup, log_));
+    auto places = machines_.back()->open();
+    if (!places) {
+      complain(places.error());
+      return false;
+    }
+    places_.push_back(*std::move(places));
+    return true;
+  }
+
+  bool open_control(const io::ControlAddress& address) {
+    std::vector<io::ControllerHost*> hosts;
+    for (const auto& machine : machines_) hosts.push_back(&machine->host());
+    control_ = std::make_unique<io::ControlPort>(loop_, hosts);
+    const auto listening = control_->listen(address);
+    if (!listening) {
+      complain(io::explain(listening.error(), io::to_string(address)));
+      return false;
+    }
+    for (io::ControllerHost* host : hosts) {
+      host->on_line_done([this, host](const auto& done) { control_->on_line_done(*host, done); });
+    }
+    put("Switches, faults and questions at {}: see 'help' there.\n", io::to_string(*listening));
+    return true;
+  }
+
+  void power_on(const std::vector<NamedScript>& scripts) {
+    for (const auto& machine : machines_) {
+      machine->power_on();
+      for (const NamedScript& script : scripts) {
+        machine->host().play(firmware::RigRecordKind::Script, script.name, script.lines);
+      }
+    }
+  }
+
+  void run() {
+    constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+    const io::SignalWatch signals(loop_, kSignals, [&](int) { loop_.stop(); });
+    loop_.run();
+  }
+
+  [[nodiscard]] const std::vector<std::vector<std::string>>& places() const { return places_; }
+
+ private:
+  EventLog& log_;
+  io::EventLoop loop_;
+  std::vector<std::unique_ptr<VirtualMachine>> machines_;
+  std::vector<std::vector<std::string>> places_;
+  std::unique_ptr<io::ControlPort> control_;
+};
+
+void introduce(const Fleet& fleet, const firmware::Personality& personality, const io::Speed& speed) {
+  const auto& places = fleet.places();
+  const std::string_view name = personality.dialect().name;
+  if (places.size() == 1) {
+    put("A virtual {} runs {} at {}.\n", name, pace_text(speed), fmt::join(places.front(), " and "));
+  } else {
+    put("{} virtual machines with {} run {}:\n", places.size(), name, pace_text(speed));
+    for (std::size_t index = 0; index < places.size(); ++index) {
+      put("  @{} at {}\n", index + 1, fmt::join(places[index], " and "));
+    }
+  }
+  put("Try: kerf run examples/coaster.nc --machine {}\nCtrl-C ends it.\n", places.front().front());
   std::fflush(stdout);
-  loop.run();
+}
+
+ExitStatus serve(const VirtualOptions& options, const firmware::Personality& personality, io::Speed speed,
+                 const std::optional<io::ControlAddress>& control) {
+  const auto setups = setups_of(options, speed);
+  if (!setups) return ExitStatus::Usage;
+  const auto scripts = scripts_of(options);
+  if (!scripts) return ExitStatus::Usage;
+  EventLog log;
+  if (!options.log_file.empty()) {
+    const auto opened = log.open(options.log_file);
+    if (!opened) {
+      complain(
+          fmt::format("{} cannot be written ({}): choose another file for --log.", options.log_file, opened.error()));
+      return ExitStatus::Usage;
+    }
+  }
+  Fleet fleet(log);
+  for (const MachineSetup& setup : *setups) {
+    auto controller = controller_for(options, personality, setup.state_file);
+    if (!controller || !fleet.add(*std::move(controller), setup)) return ExitStatus::Usage;
+  }
+  if (control && !fleet.open_control(*control)) return ExitStatus::Usage;
+  fleet.power_on(*scripts);
+  introduce(fleet, personality, speed);
+  fleet.run();
   return ExitStatus::Done;
 }
 
@@ -245,16 +297,18 @@ ExitStatus serve_virtual(const VirtualOptions& options) {
   if (!personality) return refuse(io::explain(personality.error()));
   const auto speed = io::parse_speed(options.speed);
   if (!speed) return refuse(io::explain(io::UrlError{.fault = io::UrlFault::BadSpeed, .part = options.speed}));
-  if (options.listen.empty() && options.pty.empty()) {
-    return refuse("Say where to serve: --listen tcp://127.0.0.1:5001, or --pty /tmp/kerf-grblhal, or both.");
+  std::optional<io::ControlAddress> control;
+  if (!options.control.empty()) {
+    auto address = io::parse_control_address(options.control);
+    if (!address) {
+      return refuse(
+          fmt::format("'{}' is no place for a control socket: write unix:/tmp/kerf-control or "
+                      "tcp://127.0.0.1:5100.",
+                      options.control));
+    }
+    control = *std::move(address);
   }
-  std::optional<io::TcpAddress> address;
-  if (!options.listen.empty()) {
-    auto listen = io::parse_listen_url(options.listen);
-    if (!listen) return refuse(io::explain(listen.error()));
-    address = *std::move(listen);
-  }
-  return serve(options, *personality, *speed, address);
+  return serve(options, firmware::personality_of(*personality), *speed, control);
 }
 
 }  // namespace kerf::apps

@@ -143,6 +143,8 @@ struct Board {
 
   /// Lines that were read since power-on.
   std::uint32_t lines_read = 0;
+  /// The same without `$` lines and empty ones.
+  std::uint32_t blocks_begun = 0;
   Backlash backlash;
   /// Kept only if the owner asked for it.
   std::optional<MotionLog> motion_log;

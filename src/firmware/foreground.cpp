@@ -111,6 +111,7 @@ bool Foreground::locks_gcode() const {
 void Foreground::begin_line(const gcode::ReadLine& line) {
   in_line_ = true;
   ++board_.lines_read;
+  if (!line.text.empty() && line.text.front() != '$') ++board_.blocks_begun;
   board_.be_busy(board_.personality.loop.for_line);
   if (line.overlong) {
     steps_.emplace_back(Answer{.code = ErrorCode::LineTooLong});

@@ -244,7 +244,8 @@ bool Foreground::begin_probe(Probe& step) {
   if (!check_travel(step.move.target_mm)) return true;
   static_cast<void>(plan_when_room(step.move.target_mm, step.move.feed));  // the queue is empty
   static_cast<void>(cycle_.take_contacts());
-  if (const auto surface = board_.workcell.surface_step(board_.geometry())) {
+  if (const auto surface =
+          board_.workcell.surface_step(board_.executor.motor_steps_at(board_.now), board_.geometry())) {
     board_.executor.watch({.axis = vocabulary::Axis::Z,
                            .steps = step.move.away ? *surface + 1 : *surface,
                            .above = step.move.away,

@@ -230,6 +230,7 @@ struct Personality {
 
   bool full_buffer_drops_realtime = false;  ///< Rabbit
   bool has_plugins = false;                 ///< grblHAL: a card slot and a pendant may be fitted
+  bool network_waits_for_room = false;      ///< grblHAL: TCP takes no more than fits, realtime bytes wait behind data
   bool drops_delete = false;                ///< grblHAL: DEL outside `$` lines never reaches the line
   bool keeps_special_bytes = false;         ///< grblHAL: `$` lines and comments may keep DEL, top-bit bytes and `?!~`
   /// grblHAL's settings beyond Grbl's, and what hangs on them: jog clipping, door and tool change options, reset

@@ -18,27 +18,6 @@ constexpr double kMmPerInch = 25.4;
 constexpr std::array<std::string_view, 9> kWorkOffsets = {"G54", "G55",   "G56",   "G57",  "G58",
                                                           "G59", "G59.1", "G59.2", "G59.3"};
 
-std::optional<int> substate_of(const Board& board) {
-  switch (board.state) {
-    case MachineState::Hold: return board.hold_complete ? vocabulary::kHoldComplete : vocabulary::kHoldDecelerating;
-    case MachineState::Door:
-      switch (board.door) {
-        case DoorPhase::Closed: return vocabulary::kDoorClosedReady;
-        case DoorPhase::Ajar: return vocabulary::kDoorOpen;
-        case DoorPhase::Retracting: return vocabulary::kDoorRetracting;
-        case DoorPhase::Resuming: return board.personality.realtime.door_resuming_substate;
-      }
-      return std::nullopt;
-    case MachineState::Alarm:
-      if (board.alarm != 0 && (board.report.everything || board.reports(ReportBit::AlarmSubstate))) return board.alarm;
-      return std::nullopt;
-    case MachineState::Run:
-      if (board.probing && board.reports(ReportBit::RunSubstate)) return vocabulary::kRunProbing;
-      return std::nullopt;
-    default: return std::nullopt;
-  }
-}
-
 std::vector<std::string> parser_state_words(const Board& board) {
   constexpr int kParking = 41;
   constexpr unsigned kParkingOverride = 2;
@@ -70,6 +49,27 @@ bool is_grblhal_like(const Board& board) {
 }
 
 }  // namespace
+
+std::optional<int> substate_of(const Board& board) {
+  switch (board.state) {
+    case MachineState::Hold: return board.hold_complete ? vocabulary::kHoldComplete : vocabulary::kHoldDecelerating;
+    case MachineState::Door:
+      switch (board.door) {
+        case DoorPhase::Closed: return vocabulary::kDoorClosedReady;
+        case DoorPhase::Ajar: return vocabulary::kDoorOpen;
+        case DoorPhase::Retracting: return vocabulary::kDoorRetracting;
+        case DoorPhase::Resuming: return board.personality.realtime.door_resuming_substate;
+      }
+      return std::nullopt;
+    case MachineState::Alarm:
+      if (board.alarm != 0 && (board.report.everything || board.reports(ReportBit::AlarmSubstate))) return board.alarm;
+      return std::nullopt;
+    case MachineState::Run:
+      if (board.probing && board.reports(ReportBit::RunSubstate)) return vocabulary::kRunProbing;
+      return std::nullopt;
+    default: return std::nullopt;
+  }
+}
 
 bool Reporter::is_busy() const {
   switch (board_.state) {

@@ -68,4 +68,7 @@ class Reporter {
   std::optional<gcode::ModalState> last_modal_;
 };
 
+/// The number behind the state's colon in a status report.
+[[nodiscard]] std::optional<int> substate_of(const Board& board);
+
 }  // namespace kerf::firmware

@@ -1,6 +1,7 @@
 #include "firmware/virtual_controller.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <variant>
 
 #include "common/base/overloaded.hpp"
@@ -26,6 +27,7 @@ struct VirtualController::Parts {
         pendant(board, receiver, reporter, foreground) {}
 
   [[nodiscard]] Instant next_deadline() const {
+    if (is_stalled()) return std::min(cycle.next_deadline(), stalled_until);
     return std::min(
         {cycle.next_deadline(), foreground.next_deadline(), pendant.next_deadline(), board.upload.next_deadline()});
   }
@@ -34,6 +36,9 @@ struct VirtualController::Parts {
   void live_at(Instant at) {
     board.now = at;
     cycle.advance();
+    is_settled = true;
+    if (is_stalled()) return;
+    catch_up();
     foreground.look_at_switches();
     foreground.settle();
     pendant.advance();
@@ -41,8 +46,11 @@ struct VirtualController::Parts {
     is_settled = true;
   }
 
+  [[nodiscard]] bool is_stalled() const { return board.now < stalled_until; }
+
   /// One byte of the wire in command.
   void take(std::uint8_t byte) {
+    if (is_stalled()) return receive_asleep(byte);
     if (board.slot.exists() && (board.upload.is_receiving() || YModem::begins(byte))) return take_upload(byte);
     if (receiver.full()) foreground.run();
     const auto fate = receiver.take(byte, foreground.line_context());
@@ -70,6 +78,44 @@ struct VirtualController::Parts {
     foreground.run();
   }
 
+  void take_from_pendant(std::uint8_t byte) {
+    if (board.pendant_commands) {
+      take(byte);
+    } else if (is_stalled()) {
+      late_pendant_bytes += static_cast<char>(byte);
+    } else if (!pendant.take_unasked(byte)) {
+      act(byte);
+    }
+  }
+
+  void happen(const WorkcellEvent& event) {
+    foreground.settle();
+    board.workcell.apply(event);
+    foreground.look_at_switches();
+    if (const auto* change = std::get_if<InputChanged>(&event)) {
+      if (change->active) press(change->input);
+      if (change->input == Input::Door && !change->active) cycle.close_door();
+    }
+    foreground.run();
+  }
+
+  /// Only the receive interrupt is awake, and what a firmware answers from there.
+  void receive_asleep(std::uint8_t byte) {
+    if (receiver.take(byte, foreground.line_context()) != Receiver::Fate::Realtime) return;
+    if (board.personality.status.at_once && byte == static_cast<std::uint8_t>(vocabulary::Realtime::StatusQuery)) {
+      realtime.act(byte);
+    } else {
+      late_bytes += static_cast<char>(byte);
+    }
+  }
+
+  /// What waited for the main loop.
+  void catch_up() {
+    for (const char byte : std::exchange(late_bytes, {})) act(static_cast<std::uint8_t>(byte));
+    for (const char byte : std::exchange(late_pendant_bytes, {})) take_from_pendant(static_cast<std::uint8_t>(byte));
+    for (const WorkcellEvent& event : std::exchange(late_events, {})) happen(event);
+  }
+
   void press(Input input) {
     switch (input) {
       case Input::FeedHold: cycle.feed_hold(); break;
@@ -93,6 +139,11 @@ struct VirtualController::Parts {
   Pendant pendant;
   /// False while the main loop may still find something to do at `board.now`.
   bool is_settled = true;
+  /// The main loop stands still until then; what it will find is kept.
+  Instant stalled_until{Instant::min()};
+  std::string late_bytes;
+  std::string late_pendant_bytes;
+  std::vector<WorkcellEvent> late_events;
 };
 
 VirtualController::VirtualController(const Personality& personality, StoredState stored, Equipment equipment)
@@ -112,6 +163,7 @@ void VirtualController::on_bytes(Instant now, std::string_view bytes) {
   for (const char byte : bytes) {
     if (!parts_->board.pendant_commands) parts_->take(static_cast<std::uint8_t>(byte));
   }
+  if (parts_->is_stalled()) return;
   parts_->foreground.run();
   parts_->is_settled = false;
 }
@@ -119,29 +171,25 @@ void VirtualController::on_bytes(Instant now, std::string_view bytes) {
 void VirtualController::on_pendant_bytes(Instant now, std::string_view bytes) {
   if (!parts_->board.equipment.pendant) return;
   if (now > parts_->board.now) advance_to(now);
-  for (const char letter : bytes) {
-    const auto byte = static_cast<std::uint8_t>(letter);
-    if (parts_->board.pendant_commands) {
-      parts_->take(byte);
-    } else if (!parts_->pendant.take_unasked(byte)) {
-      parts_->act(byte);
-    }
-  }
+  for (const char byte : bytes) parts_->take_from_pendant(static_cast<std::uint8_t>(byte));
+  if (parts_->is_stalled()) return;
   parts_->foreground.run();
   parts_->is_settled = false;
 }
 
 void VirtualController::submit(Instant now, const WorkcellEvent& event) {
   if (now > parts_->board.now) advance_to(now);
-  parts_->foreground.settle();
-  parts_->board.workcell.apply(event);
-  parts_->foreground.look_at_switches();
-  if (const auto* change = std::get_if<InputChanged>(&event)) {
-    if (change->active) parts_->press(change->input);
-    if (change->input == Input::Door && !change->active) parts_->cycle.close_door();
+  if (parts_->is_stalled()) {
+    parts_->late_events.push_back(event);
+    return;
   }
-  parts_->foreground.run();
+  parts_->happen(event);
   parts_->is_settled = false;
+}
+
+void VirtualController::stall(Instant now, Duration time) {
+  advance_to(now);
+  parts_->stalled_until = std::max(parts_->stalled_until, parts_->board.now + time);
 }
 
 void VirtualController::advance_to(Instant now) {
@@ -174,6 +222,10 @@ const StoredState& VirtualController::stored() const {
   return parts_->board.stored;
 }
 
+const Equipment& VirtualController::equipment() const {
+  return parts_->board.equipment;
+}
+
 unsigned VirtualController::stored_revision() const {
   return parts_->board.stored_revision;
 }
@@ -188,6 +240,28 @@ const Personality& VirtualController::personality() const {
 
 vocabulary::MachineState VirtualController::state() const {
   return parts_->board.state;
+}
+
+std::optional<int> VirtualController::substate() const {
+  const Board& board = parts_->board;
+  if (board.state != MachineState::Alarm) return substate_of(board);
+  return board.alarm != 0 ? std::optional{board.alarm} : std::nullopt;
+}
+
+std::uint32_t VirtualController::lines_begun() const {
+  return parts_->board.blocks_begun;
+}
+
+const Workcell& VirtualController::workcell() const {
+  return parts_->board.workcell;
+}
+
+void VirtualController::set_workcell(const Workcell& workcell) {
+  parts_->board.workcell = workcell;
+}
+
+vocabulary::AxisSteps VirtualController::motor_steps() const {
+  return parts_->board.executor.motor_steps_at(parts_->board.now);
 }
 
 vocabulary::AxisSteps VirtualController::position_steps() const {

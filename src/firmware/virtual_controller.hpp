@@ -2,7 +2,9 @@
 // A controller that is not there: the firmware side of the wire as a value that is fed bytes and time.
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +41,8 @@ class VirtualController {
   void on_pendant_bytes(Instant now, std::string_view bytes);
   /// Something happens to the machine.
   void submit(Instant now, const WorkcellEvent& event);
+  /// The main loop stands still for `time`: bytes fill the receive buffer, everything else waits, motion goes on.
+  void stall(Instant now, Duration time);
   /// Lets time pass up to `now`.
   void advance_to(Instant now);
   /// When this controller next does something by itself; `kNever` when idle.
@@ -51,12 +55,23 @@ class VirtualController {
   /// no more than this.
   [[nodiscard]] std::size_t receive_room() const;
   [[nodiscard]] const StoredState& stored() const;
+  /// What is plugged into it.
+  [[nodiscard]] const Equipment& equipment() const;
   /// Increases whenever `stored()` changes, so that an owner knows when to save it.
   [[nodiscard]] unsigned stored_revision() const;
   /// Ids of stored settings that were dropped at construction.
   [[nodiscard]] const std::vector<std::string>& rejected_settings() const;
   [[nodiscard]] const Personality& personality() const;
   [[nodiscard]] vocabulary::MachineState state() const;
+  /// The number behind the state's colon, as a status report with everything switched on would have it.
+  [[nodiscard]] std::optional<int> substate() const;
+  /// G-code lines that were begun since power-on; `$` lines and empty ones do not count.
+  [[nodiscard]] std::uint32_t lines_begun() const;
+  /// The world around it. Somebody who replaces a controller takes it along, before power_on().
+  [[nodiscard]] const Workcell& workcell() const;
+  void set_workcell(const Workcell& workcell);
+  /// Where the motors stand, counted from power-on.
+  [[nodiscard]] vocabulary::AxisSteps motor_steps() const;
   /// Machine position in motor steps at the last instant that went in.
   [[nodiscard]] vocabulary::AxisSteps position_steps() const;
   /// The same in mm, one value for each axis that the machine has.

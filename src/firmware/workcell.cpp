@@ -1,6 +1,7 @@
 #include "firmware/workcell.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "common/base/overloaded.hpp"
 
@@ -31,7 +32,10 @@ void Workcell::apply(const WorkcellEvent& event) {
             homing_switches_.at(vocabulary::index_of(moved.axis)) = {.at_travel_end = false,
                                                                      .distance_mm = moved.distance_mm};
           },
-          [&](const ProbeSurfaceMoved& moved) { surface_mm_ = moved.z_mm; },
+          [&](const ProbeSurfaceMoved& moved) {
+            surface_mm_ = moved.z_mm;
+            surface_shape_ = moved.shape;
+          },
       },
       event);
 }
@@ -42,7 +46,8 @@ std::optional<std::int32_t> Workcell::homing_switch_step(std::size_t axis, const
       homing_switch.at_travel_end ? std::optional<double>{geometry.travel_mm.at(axis)} : homing_switch.distance_mm;
   if (axis >= geometry.axes || !distance_mm || (homing_switch.at_travel_end && *distance_mm <= 0)) return std::nullopt;
   const double steps = *distance_mm * static_cast<double>(geometry.steps_per_mm.at(axis));
-  return static_cast<std::int32_t>(has(geometry.homing_negative, axis) ? -std::ceil(steps) : std::ceil(steps));
+  return static_cast<std::int32_t>(has(geometry.homing_negative, axis) ? -std::ceil(steps) : std::ceil(steps)) -
+         uncounted_.at(axis);
 }
 
 AxisMask Workcell::limits_at(const AxisSteps& physical, const Geometry& geometry) const {
@@ -56,15 +61,27 @@ AxisMask Workcell::limits_at(const AxisSteps& physical, const Geometry& geometry
   return active;
 }
 
-std::optional<std::int32_t> Workcell::surface_step(const Geometry& geometry) const {
+std::optional<std::int32_t> Workcell::surface_step(const AxisSteps& physical, const Geometry& geometry) const {
   if (!surface_mm_ || geometry.axes <= kZ) return std::nullopt;
-  return static_cast<std::int32_t>(std::floor(*surface_mm_ * static_cast<double>(geometry.steps_per_mm.at(kZ))));
+  const auto mm = [&](std::size_t axis) {
+    const double steps = static_cast<double>(physical.at(axis)) + static_cast<double>(uncounted_.at(axis));
+    return steps / static_cast<double>(geometry.steps_per_mm.at(axis));
+  };
+  const double turns = 2 * std::numbers::pi / surface_shape_.wave_length_mm;
+  const double height_mm = *surface_mm_ + surface_shape_.tilt_x * mm(0) + surface_shape_.tilt_y * mm(1) +
+                           surface_shape_.wave_mm * std::sin(turns * mm(0)) * std::sin(turns * mm(1));
+  return static_cast<std::int32_t>(std::floor(height_mm * static_cast<double>(geometry.steps_per_mm.at(kZ)))) -
+         uncounted_.at(kZ);
 }
 
 bool Workcell::probe_at(const AxisSteps& physical, const Geometry& geometry) const {
   if (is_active(Input::Probe)) return true;
-  const auto step = surface_step(geometry);
+  const auto step = surface_step(physical, geometry);
   return step && physical.at(kZ) <= *step;
+}
+
+void Workcell::restart_count(const AxisSteps& physical) {
+  for (std::size_t axis = 0; axis < physical.size(); ++axis) uncounted_.at(axis) += physical.at(axis);
 }
 
 }  // namespace kerf::firmware

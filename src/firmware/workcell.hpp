@@ -43,10 +43,21 @@ struct HomingSwitchMoved {
   std::optional<double> distance_mm;
 };
 
+/// How a surface differs from a flat one. Heights are exact where a probe goes straight down; the place where a slanted
+/// one touches is taken from the height below its start.
+struct SurfaceShape {
+  double tilt_x = 0;   ///< mm up for each mm along X
+  double tilt_y = 0;   ///< the same along Y
+  double wave_mm = 0;  ///< hills of this height and hollows as deep, side by side like the fields of a chessboard
+  double wave_length_mm = 1;  ///< from hill to hill
+};
+
 /// Moves the surface that the probe touches: the probe closes while Z is at or below `z_mm`, counted from where Z stood
-/// at power-on. Without a value (the default) there is nothing to touch.
+/// at power-on; `shape` is added, counted from where X and Y stood then. Without a value (the default) there is nothing
+/// to touch.
 struct ProbeSurfaceMoved {
   std::optional<double> z_mm;
+  SurfaceShape shape{};
 };
 
 using WorkcellEvent = std::variant<InputChanged, LimitHeld, HomingSwitchMoved, ProbeSurfaceMoved>;
@@ -72,8 +83,12 @@ class Workcell {
   [[nodiscard]] bool probe_at(const vocabulary::AxisSteps& physical, const Geometry& geometry) const;
   /// The physical step count of an axis at which its homing switch closes; none if it has no switch or is held by hand.
   [[nodiscard]] std::optional<std::int32_t> homing_switch_step(std::size_t axis, const Geometry& geometry) const;
-  /// The physical Z step count at and below which the probe is closed by the surface.
-  [[nodiscard]] std::optional<std::int32_t> surface_step(const Geometry& geometry) const;
+  /// The physical Z step count at and below which the probe is closed by the surface under X and Y of `physical`.
+  [[nodiscard]] std::optional<std::int32_t> surface_step(const vocabulary::AxisSteps& physical,
+                                                         const Geometry& geometry) const;
+  /// The motors lose power at `physical` and count from zero when it comes back: switches and surface stay where they
+  /// are.
+  void restart_count(const vocabulary::AxisSteps& physical);
 
  private:
   struct HomingSwitch {
@@ -85,6 +100,9 @@ class Workcell {
   vocabulary::AxisMask held_limits_ = 0;
   std::array<HomingSwitch, vocabulary::kMaxAxes> homing_switches_{};
   std::optional<double> surface_mm_;
+  SurfaceShape surface_shape_;
+  /// Motor steps that were made before the count began again.
+  vocabulary::AxisSteps uncounted_{};
 };
 
 }  // namespace kerf::firmware

@@ -48,5 +48,27 @@ TEST(Workcell, ProbeTouchesTheSurfaceOrIsPressed) {
   EXPECT_TRUE(workcell.probe_at(AxisSteps{}, machine()));
 }
 
+TEST(Workcell, SurfacesNeedNotBeFlat) {
+  Workcell workcell;
+  workcell.apply(ProbeSurfaceMoved{.z_mm = -3.0, .shape = {.tilt_x = 0.01, .tilt_y = -0.02}});
+  EXPECT_EQ(workcell.surface_step(AxisSteps{}, machine()), -300);
+  EXPECT_EQ(workcell.surface_step(AxisSteps{10000, 5000, 0}, machine()), -300);
+  EXPECT_EQ(workcell.surface_step(AxisSteps{10000, 0, 0}, machine()), -200);
+  workcell.apply(ProbeSurfaceMoved{.z_mm = -3.0, .shape = {.wave_mm = 0.5, .wave_length_mm = 40}});
+  EXPECT_EQ(workcell.surface_step(AxisSteps{}, machine()), -300);
+  EXPECT_EQ(workcell.surface_step(AxisSteps{1000, 1000, 0}, machine()), -250);
+  EXPECT_EQ(workcell.surface_step(AxisSteps{1000, 3000, 0}, machine()), -350);
+}
+
+TEST(Workcell, TheWorldStaysWhereItIsWhenTheMotorsCountAgain) {
+  Workcell workcell;
+  workcell.apply(ProbeSurfaceMoved{.z_mm = -3.0});
+  workcell.restart_count(AxisSteps{500, 0, -100});
+  EXPECT_EQ(workcell.homing_switch_step(0, machine()), 19500);
+  EXPECT_EQ(workcell.surface_step(AxisSteps{}, machine()), -200);
+  EXPECT_FALSE(workcell.probe_at(AxisSteps{0, 0, -199}, machine()));
+  EXPECT_TRUE(workcell.probe_at(AxisSteps{0, 0, -200}, machine()));
+}
+
 }  // namespace
 }  // namespace kerf::firmware

@@ -46,15 +46,21 @@ struct PtyServer::State {
   /// Held open, or every client that closes would end the terminal.
   int client_side = -1;
   std::string path;
+
+  void close() {
+    if (link) link->close();
+    link.reset();
+    if (client_side >= 0) ::close(client_side);
+    client_side = -1;
+    if (!path.empty()) ::unlink(path.c_str());
+  }
 };
 
 PtyServer::PtyServer(EventLoop& loop, std::function<void(std::string_view)> received)
     : state_(std::make_shared<State>(loop, std::move(received))) {}
 
 PtyServer::~PtyServer() {
-  if (state_->link) state_->link->close();
-  if (state_->client_side >= 0) ::close(state_->client_side);
-  if (!state_->path.empty()) ::unlink(state_->path.c_str());
+  state_->close();
 }
 
 std::expected<void, ListenError> PtyServer::open(const std::string& path) {
@@ -87,6 +93,13 @@ void PtyServer::write(std::string_view bytes) {
   if (!state_->link) return;
   if (state_->link->waiting_bytes() + bytes.size() > kMostWaitingBytes) return;
   state_->link->write_lines(bytes);
+}
+
+std::expected<void, ListenError> PtyServer::set_cable(bool connected) {
+  if (state_->path.empty() || connected == (state_->link != nullptr)) return {};
+  if (connected) return open(state_->path);
+  state_->close();
+  return {};
 }
 
 std::string explain(const ListenError& error, std::string_view place) {

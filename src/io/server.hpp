@@ -32,6 +32,8 @@ class TcpServer {
     std::function<void(std::string_view peer)> connected;
     std::function<void(std::string_view peer)> disconnected;
     std::function<void(std::string_view peer)> turned_away;
+    /// Bytes that the controller takes now; what does not fit waits in the network.
+    std::function<std::size_t()> room;
   };
 
   TcpServer(EventLoop& loop, Callbacks callbacks);
@@ -41,6 +43,10 @@ class TcpServer {
   [[nodiscard]] std::expected<TcpAddress, ListenError> listen(const TcpAddress& address);
   /// Without a client the bytes are gone, as they would be on a wire that ends nowhere.
   void write(std::string_view bytes);
+  /// There may be room again.
+  void go_on();
+  /// While the cable is out nobody gets in, and who was in is out.
+  void set_cable(bool connected);
 
  private:
   struct State;
@@ -59,6 +65,8 @@ class PtyServer {
   [[nodiscard]] std::expected<void, ListenError> open(const std::string& path);
   /// Bytes that nobody reads are kept up to a limit, then dropped.
   void write(std::string_view bytes);
+  /// While the cable is out there is no terminal: who has it open reads its end, as of a USB port that is pulled.
+  [[nodiscard]] std::expected<void, ListenError> set_cable(bool connected);
 
  private:
   struct State;

@@ -3,6 +3,7 @@
 // Included only by the transports and servers, because it pulls Asio in.
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -22,12 +23,19 @@ class StreamLink : public std::enable_shared_from_this<StreamLink<Stream>> {
   struct Callbacks {
     std::function<void(std::string_view)> received;
     std::function<void(boost::system::error_code)> lost;
+    /// Most bytes that `received` may be given now; without it, any number. At 0 nothing is read until go_on().
+    std::function<std::size_t()> room = {};
   };
 
   StreamLink(Stream stream, Callbacks callbacks)
       : stream_(std::move(stream)), callbacks_(std::make_shared<const Callbacks>(std::move(callbacks))) {}
 
   void start() { read(); }
+
+  /// There may be room again.
+  void go_on() {
+    if (callbacks_ && std::exchange(waits_for_room_, false)) read();
+  }
 
   void write_realtime(std::string_view bytes) {
     realtime_.append(bytes);
@@ -56,7 +64,10 @@ class StreamLink : public std::enable_shared_from_this<StreamLink<Stream>> {
   static constexpr std::size_t kMostBytesAtOnce = 256;
 
   void read() {
-    stream_.async_read_some(boost::asio::buffer(incoming_),
+    const std::size_t room = callbacks_->room ? callbacks_->room() : incoming_.size();
+    waits_for_room_ = room == 0;
+    if (waits_for_room_) return;
+    stream_.async_read_some(boost::asio::buffer(incoming_, room),
                             [self = this->shared_from_this()](boost::system::error_code fault, std::size_t count) {
                               if (fault) return self->lose(fault);
                               const auto callbacks = self->callbacks_;  // the owner may close() in there
@@ -95,6 +106,7 @@ class StreamLink : public std::enable_shared_from_this<StreamLink<Stream>> {
   std::string lines_;
   std::string outgoing_;
   bool is_writing_ = false;
+  bool waits_for_room_ = false;
 };
 
 }  // namespace kerf::io

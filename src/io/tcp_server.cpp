@@ -44,7 +44,7 @@ struct TcpServer::State : std::enable_shared_from_this<State> {
   void welcome(tcp::socket socket) {
     boost::system::error_code gone;
     const tcp::endpoint endpoint = socket.remote_endpoint(gone);
-    if (gone) return;
+    if (gone || !has_cable) return;
     const std::string name = name_of(endpoint);
     if (client) {
       callbacks.turned_away(name);
@@ -52,11 +52,13 @@ struct TcpServer::State : std::enable_shared_from_this<State> {
     }
     prepare_tcp(socket);
     peer = name;
-    client = std::make_shared<Link>(
-        std::move(socket),
-        Link::Callbacks{.received = callbacks.received, .lost = [self = weak_from_this()](boost::system::error_code) {
-                          if (const auto alive = self.lock()) alive->lose_client();
-                        }});
+    client = std::make_shared<Link>(std::move(socket),
+                                    Link::Callbacks{.received = callbacks.received,
+                                                    .lost =
+                                                        [self = weak_from_this()](boost::system::error_code) {
+                                                          if (const auto alive = self.lock()) alive->lose_client();
+                                                        },
+                                                    .room = callbacks.room});
     callbacks.connected(peer);
     client->start();
   }
@@ -70,6 +72,7 @@ struct TcpServer::State : std::enable_shared_from_this<State> {
   Callbacks callbacks;
   std::shared_ptr<Link> client;
   std::string peer;
+  bool has_cable = true;
 };
 
 TcpServer::TcpServer(EventLoop& loop, Callbacks callbacks)
@@ -101,6 +104,17 @@ std::expected<TcpAddress, ListenError> TcpServer::listen(const TcpAddress& addre
 
 void TcpServer::write(std::string_view bytes) {
   if (state_->client) state_->client->write_lines(bytes);
+}
+
+void TcpServer::go_on() {
+  if (state_->client) state_->client->go_on();
+}
+
+void TcpServer::set_cable(bool connected) {
+  state_->has_cable = connected;
+  if (connected || !state_->client) return;
+  state_->client->close();
+  state_->lose_client();
 }
 
 }  // namespace kerf::io

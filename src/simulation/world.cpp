@@ -36,25 +36,24 @@ WorldOptions network_world(vocabulary::Firmware firmware, Duration latency) {
 
 World::World(const WorldOptions& options)
     : options_(options),
-      controller_(
-          std::make_unique<firmware::VirtualController>(firmware::personality_of(options.firmware), options.stored)),
+      rig_(firmware::VirtualController(firmware::personality_of(options.firmware), options.stored)),
       session_(options.session),
       to_controller_(options.wire, WireGrain::Byte),
       from_controller_(options.wire, WireGrain::Line) {
-  controller_->power_on(now_);
+  rig_.power_on(now_);
   // Nobody listens yet: what a controller says before the link is open is lost.
   const Instant opened_at = now_ + options.head_start;
-  while (controller_->next_deadline() <= opened_at) {
-    now_ = std::max(now_, controller_->next_deadline());
-    controller_->advance_to(now_);
+  while (rig_.next_deadline() <= opened_at) {
+    now_ = std::max(now_, rig_.next_deadline());
+    rig_.advance_to(now_);
   }
   now_ = opened_at;
-  controller_->advance_to(now_);
+  rig_.advance_to(now_);
 }
 
 void World::open() {
   // What was said before nobody heard.
-  static_cast<void>(controller_->take_outbox());
+  static_cast<void>(rig_.take_outbox());
   linked_ = true;
   session_.on_open(now_);
   if (options_.opening_resets) restart_controller();
@@ -62,9 +61,7 @@ void World::open() {
 }
 
 void World::restart_controller() {
-  controller_ =
-      std::make_unique<firmware::VirtualController>(firmware::personality_of(options_.firmware), controller_->stored());
-  controller_->power_on(now_);
+  rig_.submit(now_, firmware::Reboot{});
   settle();
 }
 
@@ -82,12 +79,27 @@ void World::submit(const session::Command& command) {
 }
 
 void World::touch(const firmware::WorkcellEvent& event) {
-  controller_->submit(now_, event);
+  rig_.submit(now_, event);
   settle();
 }
 
+bool World::order(std::string_view line) {
+  const auto parsed = firmware::parse_script_line(line);
+  if (!parsed || !*parsed) return false;
+  rig_.submit(now_, **parsed, "test");
+  settle();
+  return true;
+}
+
+bool World::play(std::string_view script) {
+  auto lines = firmware::parse_script(script);
+  if (!lines) return false;
+  rig_.play(now_, firmware::RigRecordKind::Script, "script", *std::move(lines));
+  return true;
+}
+
 void World::inject_to_controller(std::string_view bytes) {
-  controller_->on_bytes(now_, bytes);
+  rig_.on_bytes(now_, bytes);
   settle();
 }
 
@@ -108,14 +120,22 @@ void World::settle() {
   }
   events_.insert(events_.end(), std::make_move_iterator(out.events.begin()), std::make_move_iterator(out.events.end()));
   most_in_flight_ = std::max(most_in_flight_, session_.bytes_in_flight());
-  const std::string said = controller_->take_outbox();
+  const std::string said = rig_.take_outbox();
   if (linked_) from_controller_.send(now_, said);
+  auto records = rig_.take_records();
+  log_.insert(log_.end(), std::make_move_iterator(records.begin()), std::make_move_iterator(records.end()));
+  static_cast<void>(rig_.take_lines_done());
+  follow_link();
+}
+
+void World::follow_link() {
+  if (linked_ && rig_.link() == firmware::LinkState::Cut) cut_link();
 }
 
 void World::move_bytes() {
   if (const std::string bytes = to_controller_.take_arrived(now_); !bytes.empty()) {
     record(Direction::ToController, bytes);
-    controller_->on_bytes(now_, bytes);
+    rig_.on_bytes(now_, bytes);
   }
   if (const std::string bytes = from_controller_.take_arrived(now_); !bytes.empty()) {
     record(Direction::FromController, bytes);
@@ -124,7 +144,7 @@ void World::move_bytes() {
 }
 
 Instant World::next_deadline() const {
-  return std::min({session_.next_deadline(), controller_->next_deadline(), to_controller_.next_deadline(),
+  return std::min({session_.next_deadline(), rig_.next_deadline(), to_controller_.next_deadline(),
                    from_controller_.next_deadline()});
 }
 
@@ -136,7 +156,7 @@ bool World::step(Instant limit) {
     return false;
   }
   now_ = std::max(now_, next);
-  controller_->advance_to(now_);
+  rig_.advance_to(now_);
   move_bytes();
   if (session_.next_deadline() <= now_) session_.advance_to(now_);
   settle();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
+#include "firmware/rig.hpp"
 #include "firmware/stored_state.hpp"
 #include "firmware/virtual_controller.hpp"
 #include "firmware/workcell.hpp"
@@ -46,8 +47,8 @@ struct TranscriptEntry {
   friend bool operator==(const TranscriptEntry&, const TranscriptEntry&) = default;
 };
 
-/// A session, a virtual controller, and two wires. Time jumps from one deadline to the next; the same inputs at the
-/// same instants give the same bytes.
+/// A session, a virtual controller in its rig, and two wires. Time jumps from one deadline to the next; the same inputs
+/// at the same instants give the same bytes.
 class World {
  public:
   explicit World(const WorldOptions& options);
@@ -58,6 +59,10 @@ class World {
   void cut_link();
   void submit(const session::Command& command);
   void touch(const firmware::WorkcellEvent& event);
+  /// Does what a line of a script says, now: `drop to next 3`, `link cut`, `reboot`. False if it is none.
+  [[nodiscard]] bool order(std::string_view line);
+  /// Plays a script from now on. False if it is none.
+  [[nodiscard]] bool play(std::string_view script);
   /// Bytes that somebody else sends to the controller: another sender, a boot loader, noise.
   void inject_to_controller(std::string_view bytes);
   /// Bytes that reach the session although the controller did not send them.
@@ -80,7 +85,9 @@ class World {
 
   [[nodiscard]] Instant now() const { return now_; }
   [[nodiscard]] const session::Session& session() const { return session_; }
-  [[nodiscard]] const firmware::VirtualController& controller() const { return *controller_; }
+  [[nodiscard]] const firmware::VirtualController& controller() const { return rig_.controller(); }
+  /// What was ordered, what was hit, and what became of the machine.
+  [[nodiscard]] const std::vector<firmware::RigRecord>& log() const { return log_; }
   /// Everything that the session told, in order.
   [[nodiscard]] const std::vector<session::Event>& events() const { return events_; }
   [[nodiscard]] const std::vector<TranscriptEntry>& transcript() const { return transcript_; }
@@ -93,16 +100,18 @@ class World {
   [[nodiscard]] Instant next_deadline() const;
   void settle();
   void move_bytes();
+  void follow_link();
   void record(Direction direction, const std::string& bytes);
 
   WorldOptions options_;
   Instant now_{};
-  std::unique_ptr<firmware::VirtualController> controller_;
+  firmware::Rig rig_;
   session::Session session_;
   Wire to_controller_;
   Wire from_controller_;
   bool linked_ = false;
   std::vector<session::Event> events_;
+  std::vector<firmware::RigRecord> log_;
   std::vector<TranscriptEntry> transcript_;
   std::size_t most_in_flight_ = 0;
 };

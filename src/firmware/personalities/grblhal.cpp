@@ -112,6 +112,7 @@ const Personality kGrblHal = {
                  .door_resuming_substate = 4,
                  .door_again_ignored = true},
     .has_plugins = true,
+    .network_waits_for_room = true,
     .drops_delete = true,
     .keeps_special_bytes = true,
     .has_extended_settings = true,
