@@ -102,6 +102,13 @@ void Board::plan_line(const motion::PathLine& line) {
   }
 }
 
+Duration Board::until_pass(int passes) const {
+  const Duration pass = personality.loop.pass;
+  const Instant free_at = std::max(busy_until, now);
+  const auto seen = (free_at - Instant{} + pass - Duration{1}) / pass;
+  return Instant{} + (seen + passes) * pass - now;
+}
+
 std::optional<AxisValues> Board::note_turn(const AxisValues& target_mm) {
   if (!personality.takes_up_backlash) return std::nullopt;
   return backlash.turn_to(target_mm, settings.axis_values(setting::kBacklash));

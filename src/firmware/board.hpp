@@ -152,6 +152,14 @@ struct Board {
   /// The main loop has no time for anything new before.
   Instant busy_until{};
 
+  /// A busy wait holds the main loop until then.
+  Instant locked_until{};
+  [[nodiscard]] bool is_locked() const { return executor.is_locking() || now < locked_until; }
+
+  /// From now to the `passes`-th pass of the main loop after the one that sees what is now. Passes lie on a grid from
+  /// time zero.
+  [[nodiscard]] Duration until_pass(int passes) const;
+
   void be_busy(int passes) { busy_until = std::max(busy_until, now) + passes * personality.loop.pass; }
   /// Queues one line; the planner must have room.
   void plan(const AxisValues& target_mm, const gcode::Feed& feed);

@@ -24,18 +24,41 @@ double delay_s(const Board& board, int setting_id, double fallback) {
   return board.settings.find(std::to_string(setting_id)) != nullptr ? board.settings.number(setting_id) : fallback;
 }
 
+Duration restore_delay(const Board& board, double seconds) {
+  const Duration delay = base::from_seconds(seconds);
+  if (!board.personality.loop.restore_delays_take_passes) return delay;
+  return delay + delay / board.planner.rules().dwell_step * board.personality.loop.pass;
+}
+
 }  // namespace
 
-void Cycle::auto_start() {
+void Cycle::auto_start(int more_passes) {
   if (board_.state != MachineState::Idle || board_.planner.is_empty()) return;
-  const LoopTimes& loop = board_.personality.loop;
-  const Instant free_at = std::max(board_.busy_until, board_.now);
-  // The loop's passes lie on a grid that began at power-on.
-  const auto passes = (free_at - Instant{} + loop.pass - Duration{1}) / loop.pass;
-  run_or_idle(Instant{} + (passes + loop.to_start) * loop.pass - board_.now);
+  run_or_idle(board_.until_pass(board_.personality.loop.to_start + more_passes));
+}
+
+void Cycle::run_or_idle_after(int passes) {
+  run_or_idle(passes == 0 ? Duration::zero() : board_.until_pass(passes));
+}
+
+/// A limit switch interrupts motion in the step that closes it.
+void Cycle::guard_limits() {
+  if (!board_.guards_hard_limits() || board_.probing) return;
+  board_.executor.clear_watches();
+  const Workcell::Geometry& geometry = board_.geometry();
+  for (std::size_t axis = 0; axis < geometry.axes; ++axis) {
+    const auto step = board_.workcell.homing_switch_step(axis, geometry);
+    if (!step) continue;
+    const bool to_minus = ((geometry.homing_negative >> axis) & 1U) != 0;
+    board_.executor.watch({.axis = static_cast<vocabulary::Axis>(axis),
+                           .steps = *step,
+                           .above = !to_minus,
+                           .seen_by_step_interrupt = board_.personality.homing.switch_sees_pulses});
+  }
 }
 
 void Cycle::run_or_idle(Duration after) {
+  guard_limits();
   board_.executor.cycle_start(board_.now, after);
   const ExecutorPhase phase = board_.executor.phase();
   moving_ = phase == ExecutorPhase::Running || phase == ExecutorPhase::Decelerating;
@@ -72,7 +95,9 @@ void Cycle::resume() {
   if (board_.personality.realtime.resume_says_nothing_said && restores) board_.say(protocol::Feedback{});
   to_restore_ = {};
   board_.hold_complete = false;
-  run_or_idle();
+  // A stopped spindle is restored first, one pass earlier.
+  const int passes = board_.personality.loop.resume_to_start;
+  run_or_idle_after(passes != 0 && was_stopped ? passes + 1 : passes);
 }
 
 void Cycle::toggle_spindle_stop() {
@@ -144,6 +169,7 @@ void Cycle::come_to_rest() {
     case Halt::SoftLimit: board_.state = MachineState::Idle; break;
     case Halt::JogCancel:
       board_.flush_motion();
+      board_.locked_until = board_.now + board_.executor.lock_delay();
       end_motion();
       break;
     case Halt::MotionCancel: board_.state = MachineState::Idle; break;
@@ -240,8 +266,12 @@ void Cycle::restore_next() {
     wanted.spindle = to_restore_.spindle;
     wanted.programmed_rpm = to_restore_.programmed_rpm;
     board_.set_accessories(wanted);
-    restored_at_ = board_.now + base::from_seconds(delay_s(board_, board_.personality.realtime.door_spindle_setting,
-                                                           kSpindleRestoreSeconds));
+    // A laser needs no time to come to its speed.
+    const double wait_s =
+        board_.planner.settings().laser_mode
+            ? 0.0
+            : delay_s(board_, board_.personality.realtime.door_spindle_setting, kSpindleRestoreSeconds);
+    restored_at_ = board_.now + restore_delay(board_, wait_s);
     return;
   }
   if (restoring_ != Restoring::Coolant && (to_restore_.flood || to_restore_.mist)) {
@@ -249,15 +279,16 @@ void Cycle::restore_next() {
     wanted.flood = to_restore_.flood;
     wanted.mist = to_restore_.mist;
     board_.set_accessories(wanted);
-    restored_at_ = board_.now + base::from_seconds(delay_s(board_, board_.personality.realtime.door_coolant_setting,
-                                                           kCoolantRestoreSeconds));
+    restored_at_ = board_.now + restore_delay(board_, delay_s(board_, board_.personality.realtime.door_coolant_setting,
+                                                              kCoolantRestoreSeconds));
     return;
   }
   restoring_ = Restoring::No;
   restored_at_ = kNever;
   to_restore_ = {};
   board_.door = DoorPhase::Closed;
-  run_or_idle();
+  const int passes = board_.personality.loop.resume_to_start;
+  run_or_idle_after(passes == 0 ? 0 : passes + 1);
 }
 
 void Cycle::sleep() {
@@ -272,7 +303,9 @@ void Cycle::start_jog() {
   jogging_in_tool_change_ = board_.state == MachineState::Tool;
   board_.state = MachineState::Jog;
   moving_ = true;
-  board_.executor.cycle_start(board_.now);
+  guard_limits();
+  const int passes = board_.personality.loop.jog_to_start;
+  board_.executor.cycle_start(board_.now, passes == 0 ? Duration::zero() : board_.until_pass(passes));
 }
 
 bool Cycle::kill() {
@@ -334,7 +367,7 @@ void Cycle::handle(const motion::ExecutorEvent& event) {
                    }
                  },
                  [&](const motion::HoldComplete& hold) {
-                   if (board_.motion_log) board_.motion_log->ended(hold.at, board_.steps());
+                   if (board_.motion_log) board_.motion_log->ended(hold.stopped_at, board_.steps());
                    come_to_rest();
                  },
                  [&](const motion::ThresholdCrossed& contact) { contacts_.push_back(contact); },

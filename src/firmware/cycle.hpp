@@ -15,7 +15,9 @@ class Cycle {
   explicit Cycle(Board& board) : board_(board) {}
 
   /// Runs queued motion if the machine is idle.
-  void auto_start();
+  void auto_start() { auto_start(0); }
+  /// The same, but the main loop had nothing else to do.
+  void auto_start_idle() { auto_start(board_.personality.loop.idle_to_start); }
   /// `~`: starts queued motion, ends a finished hold, resumes from a closed door.
   void cycle_start();
   /// `!`
@@ -61,6 +63,9 @@ class Cycle {
   enum class Halt : std::uint8_t { None, Hold, JogCancel, MotionCancel, Stop, Door, SoftLimit };
   enum class Restoring : std::uint8_t { No, Spindle, Coolant };
 
+  void auto_start(int more_passes);
+  void run_or_idle_after(int passes);
+  void guard_limits();
   void handle(const motion::ExecutorEvent& event);
   void halt(Halt reason);
   void come_to_rest();

@@ -32,6 +32,7 @@ void Foreground::power_on() {
 void Foreground::run() {
   for (;;) {
     waiting_for_ = WaitingFor::Nothing;
+    if (board_.is_locked()) return;
     if (!steps_.empty()) {
       if (!advance_front()) break;
     } else if (!read_line()) {
@@ -54,7 +55,7 @@ Duration Foreground::auto_report_interval() const {
 void Foreground::settle() {
   run();
   if (steps_.empty()) {
-    cycle_.auto_start();
+    cycle_.auto_start_idle();
     run();
   }
 }
@@ -282,7 +283,7 @@ void Foreground::request_status(bool everything) {
 bool Foreground::answers_status() const {
   const StatusRules& rules = board_.personality.status;
   if (rules.at_once) return true;
-  if (is_frozen_ || (board_.critical && !rules.when_critical)) return false;
+  if (is_frozen_ || board_.is_locked() || (board_.critical && !rules.when_critical)) return false;
   if (board_.state != MachineState::Home) return true;
   return board_.personality.homing.tracks_axes && board_.reports(vocabulary::ReportBit::ReportWhenHoming);
 }
@@ -319,6 +320,7 @@ Receiver::LineContext Foreground::line_context() const {
 Instant Foreground::next_deadline() const {
   Instant deadline = std::min(homing_.next_deadline(), next_auto_report_);
   if (until_) deadline = std::min(deadline, *until_);
+  if (board_.locked_until > board_.now) deadline = std::min(deadline, board_.locked_until);
   return deadline;
 }
 

@@ -82,7 +82,14 @@ bool Foreground::operator()(PlanMove& step) {
   if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
   if (!check_travel(step.move.target_mm)) return true;
   if (board_.state == MachineState::Check) return true;
+  const int blocks = board_.planner.block_count();
   if (!plan_when_room(step.move.target_mm, step.move.feed)) return wait_for(WaitingFor::PlannerRoom);
+  // A steady laser gets its power at once where there is nothing to cut (gnea/grbl motion_control.c).
+  const bool is_steady =
+      board_.planner.settings().laser_mode && board_.accessories.spindle == gcode::SpindleDirection::Clockwise;
+  if (board_.planner.block_count() == blocks && is_steady) {
+    insert_front({Synchronize{}, Perform{.action = gcode::SpindleSpeedChange{.rpm = step.move.feed.spindle_rpm}}});
+  }
   return true;
 }
 
@@ -137,7 +144,8 @@ bool Foreground::operator()(Dwell& step) {
   if (board_.state == MachineState::Check) return true;
   if (cycle_.is_suspended()) {
     // The delay loop stands still in a hold (T:27).
-    if (until_) step.left = *until_ - board_.now;
+    // What has begun of it goes on to its end.
+    if (until_) step.left = *until_ - board_.now - (*until_ - board_.now) % board_.planner.rules().dwell_step;
     until_.reset();
     return wait_for(WaitingFor::CycleStart);
   }
@@ -290,6 +298,9 @@ bool Foreground::finish_probe(const AxisSteps& contact, bool touched, const gcod
       !board_.personality.status.counts_changes || board_.reports(vocabulary::ReportBit::ProbeCoordinates);
   Steps next;
   if (!touched && !move.no_error) next.emplace_back(RaiseAlarm{.code = AlarmCode::ProbeFailContact});
+  if (const Duration lock = board_.executor.lock_delay(); lock > Duration::zero()) {
+    next.emplace_back(Freeze{.duration = lock, .until = std::nullopt});
+  }
   if (tells) next.emplace_back(SayProbe{});
   insert_front(std::move(next));
   return true;
@@ -317,6 +328,7 @@ bool Foreground::operator()(FinishHoming& step) {
   if (status_wanted_) reporter_.say_status(receiver_.free());
   status_wanted_ = false;
   board_.state = MachineState::Idle;
+  board_.locked_until = board_.now + board_.executor.lock_delay();
   board_.position_lost = false;
   board_.report.homed = true;
   const HomingRules& rules = board_.personality.homing;

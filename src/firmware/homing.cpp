@@ -58,13 +58,19 @@ void Homing::begin_move() {
     board_.executor.watch({.axis = static_cast<vocabulary::Axis>(axis),
                            .steps = *step,
                            .above = !has(geometry.homing_negative, axis),
+                           .seen_by_step_interrupt = board_.personality.homing.switch_sees_pulses,
                            .freezes_axis = true});
   }
   const float rate = rate_mm_per_min_ * std::sqrt(static_cast<float>(axes));
   static_cast<void>(cycle_.take_motion_ended());
   static_cast<void>(cycle_.take_contacts());
   const motion::PathLine line = {.target_mm = target, .feed = {.rate_mm_per_min = rate, .no_override = true}};
-  const auto added = board_.executor.start_system_motion(board_.now, line, motion::SystemMotion::Homing);
+  const int passes = board_.personality.loop.homing_to_start;
+  const Duration after = passes == 0 ? Duration::zero() : board_.until_pass(passes);
+  const auto added = board_.executor.start_system_motion(board_.now, line, motion::SystemMotion::Homing, after);
+  if (board_.motion_log && added == motion::Planner::Added::Queued) {
+    board_.motion_log->planned(board_.lines_read, board_.planner.system_motion());
+  }
   if (added == motion::Planner::Added::Dropped) {
     end_move();
   } else {
@@ -81,10 +87,20 @@ void Homing::lock(AxisMask axes) {
   if (left == unlocked_) return;
   unlocked_ = left;
   board_.executor.freeze_axes(static_cast<AxisMask>(axes_ & ~unlocked_));
-  if (unlocked_ == 0) end_move();
+  if (unlocked_ == 0) end_move_after(board_.personality.loop.switch_to_stop);
+}
+
+void Homing::end_move_after(int passes) {
+  if (board_.personality.loop.switch_to_stop == 0) {
+    end_move();
+  } else if (ends_at_ == kNever) {
+    ends_at_ = board_.now + board_.until_pass(passes);
+    if (ends_at_ == board_.now) end_move();
+  }
 }
 
 void Homing::end_move() {
+  ends_at_ = kNever;
   moving_ = false;
   if (board_.motion_log) board_.motion_log->ended(board_.now, board_.steps());
   board_.executor.reset(board_.now);
@@ -99,11 +115,12 @@ Homing::Outcome Homing::advance() {
     touched = static_cast<AxisMask>(touched | vocabulary::mask_of(contact.threshold.axis));
   }
   if (moving_ && approaching_ && touched != 0) lock(touched);
-  if (cycle_.take_motion_ended() && moving_) {
+  if (cycle_.take_motion_ended() && moving_ && ends_at_ == kNever) {
     if (approaching_) return Outcome::SwitchNotFound;
     if ((board_.limits() & axes_) != 0) return Outcome::SwitchStuck;
-    end_move();
+    end_move_after(0);
   }
+  if (ends_at_ <= board_.now) end_move();
   if (moving_ || board_.now < settled_at_) return Outcome::Moving;
 
   settled_at_ = kNever;

@@ -1,6 +1,7 @@
 #pragma once
 // One homing cycle: seek, pull off, locate, pull off, each a motion of its own (motion.md 1.6).
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -22,13 +23,18 @@ class Homing {
   Outcome advance();
   /// Switches may have been pressed by hand.
   void look_at_switches();
-  void abandon() { moves_left_ = 0; }
+  void abandon() {
+    moves_left_ = 0;
+    ends_at_ = kNever;
+  }
   [[nodiscard]] bool is_active() const { return moves_left_ > 0; }
-  [[nodiscard]] Instant next_deadline() const { return settled_at_; }
+  [[nodiscard]] Instant next_deadline() const { return std::min(settled_at_, ends_at_); }
 
  private:
   void begin_move();
   void end_move();
+  /// The main loop has to see that the move is over.
+  void end_move_after(int passes);
   void lock(AxisMask axes);
   void set_position();
 
@@ -42,6 +48,7 @@ class Homing {
   float distance_mm_ = 0;
   float rate_mm_per_min_ = 0;
   Instant settled_at_ = kNever;
+  Instant ends_at_ = kNever;
 };
 
 }  // namespace kerf::firmware

@@ -162,6 +162,8 @@ struct HomingRules {
   TravelRule travel = TravelRule::NegativeSpace;
   /// `$HX` exists.
   bool homes_single_axes = true;
+  /// A step is pulsed one interrupt after it was decided, so a switch closes that much later.
+  bool switch_sees_pulses = false;
   /// Answer to `$H` when no cycle has an axis.
   ErrorCode no_cycle_error = ErrorCode::HomingDisabled;
 };
@@ -210,6 +212,16 @@ struct LoopTimes {
   int for_line = 0;
   int for_block = 0;
   int to_start = 0;
+  /// More of them if the loop had nothing else to do when the motion was queued.
+  int idle_to_start = 0;
+  /// Until the steppers wake after `~` in a hold, for a jog, and for a move of the homing cycle; 0: at once.
+  int resume_to_start = 0;
+  int jog_to_start = 0;
+  int homing_to_start = 0;
+  /// From the pass that sees the last switch close to the end of the move.
+  int switch_to_stop = 0;
+  /// Each step of a delay before a resume costs one more pass.
+  bool restore_delays_take_passes = false;
 };
 
 /// What a build has beyond, or instead of, what its reference build has.

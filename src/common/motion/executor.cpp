@@ -44,14 +44,14 @@ void Executor::cycle_start(Instant now, Duration after) {
   if (!planner_.is_empty()) wake(now + after);
 }
 
-Planner::Added Executor::start_system_motion(Instant now, const PathLine& line, SystemMotion kind) {
+Planner::Added Executor::start_system_motion(Instant now, const PathLine& line, SystemMotion kind, Duration after) {
   advance_to(now);
   if (stage_ != Stage::Idle || planner_.plan_system_motion(line, cursor_.position()) == Planner::Added::Dropped) {
     return Planner::Added::Dropped;
   }
   system_kind_ = kind;
   preparer_.begin_system_motion(kind == SystemMotion::Parking);
-  wake(now);
+  wake(now + after);
   return Planner::Added::Queued;
 }
 
@@ -63,6 +63,7 @@ void Executor::wake(Instant now) {
   stage_ = Stage::Draining;
   if (rules_.restart_resets_bresenham) cursor_.leave();
   refill();
+  refill_at_ = kNever;
   if (segment_end_ == 0) load_or_stop();
 }
 
@@ -97,6 +98,7 @@ void Executor::reset(Instant now) {
   cursor_.freeze(0);
   preparer_.reset();
   first_segment_ = segment_count_ = 0;
+  refill_at_ = kNever;
   stage_ = Stage::Idle;
   held_ = false;
   block_to_report_ = false;
@@ -130,22 +132,44 @@ std::int64_t Executor::next_count() const {
   return next;
 }
 
-Instant Executor::next_deadline() const {
+Instant Executor::pass_after(Instant at) const {
+  const Duration pass = rules_.main_loop_pass;
+  if (pass == Duration::zero()) return at;
+  const auto passes = (at - Instant{} + pass - Duration{1}) / pass;
+  // A pass obeys first and prepares then.
+  return Instant{} + passes * pass + Duration{1};
+}
+
+Instant Executor::next_step() const {
   if (stage_ == Stage::Idle) return kNever;
-  if (needs_refill()) return now_;
   if (stage_ == Stage::Locking) return locked_until_;
-  return std::max(now_, instant_of(next_count()));
+  Instant next = instant_of(next_count());
+  if (needs_refill()) next = std::min(next, refill_time());
+  return std::max(now_, next);
+}
+
+Instant Executor::next_deadline() const {
+  const bool only_steps = stage_ == Stage::Stepping && watches_.empty() && !needs_refill();
+  if (!only_steps) return next_step();
+  // The last interrupt of a segment matters to nobody before its place is filled or the next segment is loaded.
+  const Instant last = instant_of(segment_end_ - static_cast<std::int64_t>(current_.counts_per_tick));
+  return std::max(now_, std::min(pass_after(last), instant_of(segment_end_)));
 }
 
 void Executor::advance_to(Instant now) {
   if (now < now_) return;
-  if (needs_refill()) refill();
   while (stage_ != Stage::Idle) {
-    const Instant at = next_deadline();
+    if (refill_at_ == kNever && needs_refill()) refill_at_ = pass_after(now_);
+    const Instant at = next_step();
     if (at > now) break;
     now_ = at;
-    run_next();
-    if (needs_refill()) refill();
+    if (needs_refill() && refill_at_ <= now_ && refill_at_ < instant_of(next_count())) {
+      refill();
+      // Where nothing more can be prepared for now, the next interrupt comes first.
+      refill_at_ = needs_refill() ? instant_of(next_count()) : kNever;
+    } else {
+      run_next();
+    }
   }
   now_ = now;
 }
@@ -175,6 +199,7 @@ void Executor::finish_segment() {
   first_segment_ = (first_segment_ + 1) % kMostSegments;
   --segment_count_;
   stage_ = Stage::Draining;
+  refill_at_ = pass_after(now_);
 }
 
 void Executor::report_finished_block(Instant at) {
@@ -193,6 +218,7 @@ void Executor::load_or_stop() {
   const Instant at = instant_of(segment_end_);
   report_finished_block(at);
   if (segment_count_ == 0) {
+    stopped_at_ = at;
     const bool homes = preparer_.in_system_motion() && system_kind_ == SystemMotion::Homing;
     const Duration wait = homes ? Duration::zero() : lock_delay();
     if (wait == Duration::zero()) {
@@ -226,7 +252,7 @@ void Executor::stop(Instant at) {
   } else if (was_holding) {
     preparer_.finish_hold();
     held_ = true;
-    events_.emplace_back(HoldComplete{.at = at});
+    events_.emplace_back(HoldComplete{.at = at, .stopped_at = stopped_at_});
   } else {
     events_.emplace_back(MotionEnded{.at = at});
   }

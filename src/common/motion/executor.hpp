@@ -55,6 +55,8 @@ struct MotionEnded {
 /// A hold came to rest; the rest of the motion is kept and cycle_start() resumes it.
 struct HoldComplete {
   Instant at;
+  /// When the motors came to rest: before the `$1` delay.
+  Instant stopped_at{};
   bool operator==(const HoldComplete&) const = default;
 };
 /// A watched threshold was crossed; `steps` is the position at contact.
@@ -89,7 +91,11 @@ class Executor {
   /// Runs one line from where the machine is, from rest to rest, beside the queue; only at rest or held. MotionEnded
   /// follows, unless the line is Dropped. Homing skips the `$1` delay; parking keeps the held block for a later
   /// cycle_start().
-  Planner::Added start_system_motion(Instant now, const PathLine& line, SystemMotion kind);
+  Planner::Added start_system_motion(Instant now, const PathLine& line, SystemMotion kind) {
+    return start_system_motion(now, line, kind, Duration::zero());
+  }
+  /// The same, but the steppers wake only `after` a while.
+  Planner::Added start_system_motion(Instant now, const PathLine& line, SystemMotion kind, Duration after);
   /// Stops dead and forgets all segments, thresholds and frozen axes; the position stays. The planner is the caller's.
   void reset(Instant now);
 
@@ -161,6 +167,11 @@ class Executor {
   [[nodiscard]] std::int64_t progress_until(Instant at) const;
   [[nodiscard]] std::int64_t next_count() const;
   [[nodiscard]] bool needs_refill() const;
+  /// When the main loop's pass comes that fills what became free at `at`.
+  [[nodiscard]] Instant pass_after(Instant at) const;
+  [[nodiscard]] Instant refill_time() const { return refill_at_ == kNever ? pass_after(now_) : refill_at_; }
+  /// As next_deadline(), with what only the executor itself has to do.
+  [[nodiscard]] Instant next_step() const;
 
   void wake(Instant now);
   void refill();
@@ -195,6 +206,9 @@ class Executor {
   std::int64_t segment_start_ = 0;
   std::int64_t segment_end_ = 0;
   bool block_to_report_ = false;
+  /// kNever: nothing has become free since the last filling.
+  Instant refill_at_ = kNever;
+  Instant stopped_at_{};
   Instant locked_until_{};
 
   std::vector<Watch> watches_;

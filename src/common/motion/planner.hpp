@@ -81,6 +81,9 @@ class Planner {
   /// Drops all blocks and forgets the previous direction (firmware's reset); position and overrides stay.
   void clear();
 
+  /// The line that plan_system_motion() took last.
+  [[nodiscard]] const PlannedBlock& system_motion() const { return ring_[slot(head_)]; }
+
   /// Takes the oldest block out, as its last segment does; for those who plan without moving.
   void discard_front();
 

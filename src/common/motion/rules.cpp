@@ -8,7 +8,8 @@ namespace kerf::motion {
 namespace {
 
 // gnea/grbl config.h, planner.h, stepper.h (ATmega328 at 16 MHz).
-constexpr MotionRules kGrbl{.idle_lock_blocks = true, .dwell_mask = 0xFFFF};
+constexpr MotionRules kGrbl{
+    .main_loop_pass = std::chrono::microseconds{10}, .idle_lock_blocks = true, .dwell_mask = 0xFFFF};
 
 // RabbitGRBL Config.h, Planner.h, Stepper.h (ESP32).
 constexpr MotionRules kRabbit{.float_rule = FloatRule::DoubleLiterals,

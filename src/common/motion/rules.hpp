@@ -29,6 +29,9 @@ struct MotionRules {
   int planner_blocks = 15;
   /// Prepared step segments that can wait, the executing one included.
   int segment_slots = 5;
+  /// Segments are prepared in passes of the main loop, which lie on a grid from time zero: a place that becomes free is
+  /// filled by the next pass, after whatever that pass is told. Zero: at once.
+  Duration main_loop_pass{};
   /// Segments per second (ACCELERATION_TICKS_PER_SECOND).
   int segments_per_s = 100;
   std::uint32_t step_timer_hz = 16'000'000;
