@@ -326,7 +326,9 @@ bool Cycle::kill() {
 
 bool Cycle::is_suspended() const {
   switch (board_.state) {
-    case MachineState::Hold: return !(halt_ == Halt::SoftLimit);
+    case MachineState::Hold:
+      if (halt_ == Halt::SoftLimit) return false;
+      return board_.hold_complete || !board_.personality.realtime.reads_while_slowing;
     case MachineState::Door: return true;
     case MachineState::Jog: return halt_ == Halt::JogCancel || halt_ == Halt::Stop;
     case MachineState::Tool: return !board_.tool_acknowledged;

@@ -195,6 +195,7 @@ struct StatusRules {
 struct RealtimeRules {
   bool same_instant_collapses = false;  ///< Grbl: two of the same override byte between two passes count once
   bool mist_toggle = false;
+  bool reads_while_slowing = false;  ///< a hold suspends the main loop only when the machine stands
   bool toggles_coolant_in_jog = false;
   bool resume_says_nothing_said = false;  ///< grblHAL: an empty `[MSG:]` when a hold ends and `$63` bit 1 is set
   int door_resuming_substate = 3;

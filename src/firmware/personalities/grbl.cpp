@@ -34,7 +34,7 @@ const Personality kGrbl = {
               .limits_lock = true,
               .runs_lines_it_cannot_store = true},
     .homing = {.fixed_cycles = {0b100, 0b011}, .homes_single_axes = false, .switch_sees_pulses = true},
-    .realtime = {.same_instant_collapses = true, .toggles_coolant_in_jog = true},
+    .realtime = {.same_instant_collapses = true, .reads_while_slowing = true, .toggles_coolant_in_jog = true},
     .stored_writes_synchronise = true,
     .soft_limits_in_check = true,
     .has_laser_spindle = true,
