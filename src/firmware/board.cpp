@@ -281,6 +281,7 @@ void Board::apply_settings() {
                .travel_mm = settings.axis_values(setting::kMaxTravel),
                .homing_negative = static_cast<AxisMask>(settings.mask(setting::kHomingDirection))};
   guards_hard_limits_ = settings.flag(setting::kHardLimits);
+  guards_soft_limits_ = settings.flag(setting::kSoftLimits);
   if (rescaled) sync_position();
 }
 

@@ -180,6 +180,8 @@ struct Board {
   [[nodiscard]] AxisValues to_mm(const AxisSteps& steps) const;
   [[nodiscard]] const Workcell::Geometry& geometry() const { return geometry_; }
   [[nodiscard]] bool guards_hard_limits() const { return guards_hard_limits_; }
+  /// `$20`; asked for each block, so it is not looked up then.
+  [[nodiscard]] bool guards_soft_limits() const { return guards_soft_limits_; }
   [[nodiscard]] AxisMask limits() const;
   [[nodiscard]] bool probe_triggered() const;
   [[nodiscard]] AxisMask all_axes() const { return static_cast<AxisMask>((1U << settings.axes()) - 1U); }
@@ -221,6 +223,7 @@ struct Board {
 
   Workcell::Geometry geometry_;
   bool guards_hard_limits_ = false;
+  bool guards_soft_limits_ = false;
 };
 
 /// "G54" for the first offset, and so on.

@@ -52,7 +52,7 @@ bool Foreground::operator()(SayProbe& /*step*/) {
 }
 
 bool Foreground::check_travel(const AxisValues& target_mm) {
-  if (!board_.settings.flag(setting::kSoftLimits) || board_.is_within_travel(target_mm)) return true;
+  if (!board_.guards_soft_limits() || board_.is_within_travel(target_mm)) return true;
   if (board_.state == MachineState::Check && !board_.personality.soft_limits_in_check) return true;
   steps_.clear();
   steps_.emplace_back(StopAtSoftLimit{});
