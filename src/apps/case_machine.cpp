@@ -69,7 +69,7 @@ std::optional<CaseMachine> load_case_machine(const CaseMachineOptions& options) 
     complain(io::explain(personality.error()));
     return std::nullopt;
   }
-  CaseMachine machine{.personality = firmware::personality_of(*personality)};
+  CaseMachine machine{.personality = **personality};
   if (!load_settings(machine, options.settings_file)) return std::nullopt;
   if (!place_switches(machine, options.limit_switches)) return std::nullopt;
   if (options.probe_contact_mm) {

@@ -14,6 +14,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/output.hpp"
+#include "firmware/personality.hpp"
 
 namespace {
 
@@ -26,7 +27,8 @@ constexpr const char* kMachineHelp =
     "  /dev/ttyUSB0       a serial port (in full: serial:///dev/ttyUSB0?baud=115200)\n"
     "  HOST:PORT          a machine in the network (tcp://HOST:PORT)\n"
     "  /tmp/kerf-grbl     a pseudo-terminal (pty:///tmp/kerf-grbl)\n"
-    "  virtual:grblhal    a machine inside Kerf: grbl, rabbit or grblhal; add ?speed=20 or ?speed=max";
+    "  virtual:grblhal    a machine inside Kerf: grbl, rabbit, grblhal or\n                     grblhal-expr; add "
+    "?speed=20 or ?speed=max";
 
 constexpr const char* kFooter =
     "\nFirst steps, without a machine:\n"
@@ -87,7 +89,9 @@ void add_virtual_play(CLI::App& command, kerf::apps::VirtualOptions& options) {
 void add_virtual(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::VirtualOptions>();
   CLI::App* command = kerf.add_subcommand("virtual", "Be a controller: serve a virtual machine to any sender");
-  command->add_option("-p,--personality", options->personality, "Which firmware to be: grbl, rabbit or grblhal")
+  command
+      ->add_option("-p,--personality", options->personality,
+                   "Which firmware to be: " + kerf::firmware::personality_names())
       ->type_name("NAME")
       ->capture_default_str();
   add_virtual_places(*command, *options);
@@ -158,7 +162,8 @@ void add_verify(CLI::App& kerf, Chosen& chosen) {
               "-m,--machine", options->machine,
               "The controller to talk to, in real time;\nwithout it, the virtual one of each talk's personality")
           ->type_name("URL");
-  command->add_option("-p,--personality", options->personality, "Only the talks of grbl, rabbit or grblhal")
+  command
+      ->add_option("-p,--personality", options->personality, "Only the talks of " + kerf::firmware::personality_names())
       ->type_name("NAME")
       ->excludes(machine);
   command->add_flag("-v,--verbose", options->verbose, "Show every line said and heard");
@@ -168,7 +173,8 @@ void add_verify(CLI::App& kerf, Chosen& chosen) {
 
 void add_case_machine(CLI::App& command, kerf::apps::CaseMachineOptions& machine) {
   command
-      .add_option("-p,--personality", machine.personality, "Which firmware the machine runs: grbl, rabbit or grblhal")
+      .add_option("-p,--personality", machine.personality,
+                  "Which firmware the machine runs: " + kerf::firmware::personality_names())
       ->type_name("NAME")
       ->capture_default_str();
   command.add_option("--settings", machine.settings_file, "The machine has the $n=value lines of this file")

@@ -201,7 +201,7 @@ ExitStatus hold_talks(const std::vector<NamedTalk>& talks, const VerifyOptions& 
 
 ExitStatus verify(const VerifyOptions& options) {
   std::unique_ptr<LiveRunner> live;
-  std::optional<vocabulary::Firmware> only;
+  const firmware::Personality* only = nullptr;
   if (!options.machine.empty()) {
     const auto url = io::parse_machine_url(options.machine);
     if (!url) {
@@ -220,7 +220,7 @@ ExitStatus verify(const VerifyOptions& options) {
   }
   auto talks = load_talks(options);
   if (!talks) return ExitStatus::Usage;
-  if (only) std::erase_if(*talks, [&](const NamedTalk& talk) { return talk.talk.personality != *only; });
+  if (only != nullptr) std::erase_if(*talks, [&](const NamedTalk& talk) { return talk.talk.personality != only; });
   return hold_talks(*talks, options, live.get());
 }
 

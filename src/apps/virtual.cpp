@@ -308,7 +308,7 @@ ExitStatus serve_virtual(const VirtualOptions& options) {
     }
     control = *std::move(address);
   }
-  return serve(options, firmware::personality_of(*personality), *speed, control);
+  return serve(options, **personality, *speed, control);
 }
 
 }  // namespace kerf::apps

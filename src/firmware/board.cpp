@@ -77,7 +77,7 @@ Board::Board(const Personality& owner, StoredState memory, Equipment fitted)
       settings(owner, axes_of(owner, stored)),
       rejected_settings(settings.load(stored)),
       outbox(protocol::style_of(owner.dialect())),
-      interpreter(gcode::rules_for(owner.firmware)),
+      interpreter(gcode::rules_for(owner.dialect())),
       planner(motion::rules_of(owner.firmware), settings.motion()),
       executor(planner, motion::rules_of(owner.firmware)),
       equipment(std::move(fitted)),

@@ -14,7 +14,7 @@ using vocabulary::SettingType;
 namespace {
 
 bool is_compiled_in(const vocabulary::CodeRow& row, const Board& board) {
-  return row.build == vocabulary::BuildOption::Usual ||
+  return board.personality.dialect().builds.contains(row.build) ||
          (row.build == vocabulary::BuildOption::FileSystem && board.slot.exists());
 }
 

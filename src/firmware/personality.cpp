@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 
+#include "common/base/text.hpp"
 #include "firmware/personalities/personalities.hpp"
 
 namespace kerf::firmware {
 
 namespace {
 
-constexpr std::array<const Personality*, 3> kAll = {&kGrbl, &kRabbit, &kGrblHal};
+constexpr std::array<const Personality*, 4> kAll = {&kGrbl, &kRabbit, &kGrblHal, &kGrblHalExpressions};
 
 }  // namespace
 
@@ -30,8 +31,21 @@ Personality built_with(const Personality& personality, const Hardware& hardware)
 }
 
 const Personality* personality_named(std::string_view name) {
-  const auto found = std::ranges::find(kAll, name, [](const Personality* one) { return one->dialect().key; });
+  const auto found =
+      std::ranges::find_if(kAll, [&](const Personality* one) { return base::iequals(one->key(), name); });
   return found == kAll.end() ? nullptr : *found;
+}
+
+std::string personality_names() {
+  std::string names;
+  for (const Personality* one : kAll) {
+    if (one == kAll.back())
+      names += " or ";
+    else if (!names.empty())
+      names += ", ";
+    names += one->key();
+  }
+  return names;
 }
 
 }  // namespace kerf::firmware

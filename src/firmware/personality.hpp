@@ -233,6 +233,8 @@ struct Hardware {
 
 /// One firmware's ways. The function pointers are named policies; everything else is a value.
 struct Personality {
+  /// What both ends of the wire know of this build.
+  const vocabulary::Dialect* speaks = nullptr;
   vocabulary::Firmware firmware{};
   Hardware hardware{};
 
@@ -288,7 +290,9 @@ struct Personality {
   /// `$I` rows behind NEWOPT: key and value.
   std::span<const std::array<std::string_view, 2>> build_rows{};
 
-  [[nodiscard]] const vocabulary::Dialect& dialect() const { return vocabulary::dialect_of(firmware); }
+  [[nodiscard]] const vocabulary::Dialect& dialect() const { return *speaks; }
+  /// What people call it on a command line: "grblhal-expr".
+  [[nodiscard]] std::string_view key() const { return speaks->key; }
 };
 
 /// The personality of a firmware; Grbl 1.1h for an unknown one.
@@ -297,10 +301,12 @@ struct Personality {
 /// The same firmware on other hardware; zeros leave a count as it is.
 [[nodiscard]] Personality built_with(const Personality& personality, const Hardware& hardware);
 
-/// The personality that people call `name` on a command line ("grbl", "rabbit", "grblhal"); null if there is none.
+/// The personality whose key is `name`, in any case; null if there is none.
 [[nodiscard]] const Personality* personality_named(std::string_view name);
 
-/// All of them, in the order of vocabulary::Firmware.
+/// All of them, in the order of vocabulary::Firmware, the usual build of each first.
 [[nodiscard]] std::span<const Personality* const> all_personalities();
+/// Their keys as a sentence lists them: "grbl, rabbit, grblhal or grblhal-expr".
+[[nodiscard]] std::string personality_names();
 
 }  // namespace kerf::firmware

@@ -52,7 +52,7 @@ SettingsStore::SettingsStore(const Personality& personality, int axes)
     : personality_(personality), rows_(personality.dialect().settings), axes_(axes) {
   for (const SettingRow& row : rows_) {
     first_slot_.push_back(slots_.size());
-    if (!vocabulary::is_usual(row, axes_)) continue;
+    if (!vocabulary::is_built(row, personality.dialect().builds, axes_)) continue;
     const int count = row.per_axis ? axes_with_settings() : 1;
     for (int axis = 0; axis < count; ++axis) {
       slots_.push_back({.match = {.row = &row, .axis = axis}, .format = vocabulary::format_of(row, axes_)});
@@ -123,7 +123,7 @@ void SettingsStore::apply_consequences() {
 }
 
 const SettingsStore::Slot* SettingsStore::slot_of(const SettingMatch& match) const {
-  if (!vocabulary::is_usual(*match.row, axes_)) return nullptr;
+  if (!vocabulary::is_built(*match.row, personality_.dialect().builds, axes_)) return nullptr;
   return &slots_.at(first_slot_.at(static_cast<std::size_t>(match.row - rows_.data())) +
                     static_cast<std::size_t>(match.axis));
 }

@@ -12,11 +12,6 @@
 namespace kerf::io {
 namespace {
 
-using vocabulary::Firmware;
-
-constexpr std::array<std::pair<std::string_view, Firmware>, 3> kPersonalities{
-    {{"grbl", Firmware::Grbl}, {"rabbit", Firmware::Rabbit}, {"grblhal", Firmware::GrblHal}}};
-
 /// Rates that Linux can name stop at 4 Mbaud; USB bridges go a little further.
 constexpr int kLeastBaud = 300;
 constexpr int kMostBaud = 12'000'000;
@@ -192,10 +187,8 @@ std::expected<TcpAddress, UrlError> parse_listen_url(std::string_view text) {
   return parse_host_port(text);
 }
 
-std::expected<Firmware, UrlError> parse_personality(std::string_view text) {
-  for (const auto& [word, firmware] : kPersonalities) {
-    if (word == lower(text)) return firmware;
-  }
+std::expected<const firmware::Personality*, UrlError> parse_personality(std::string_view text) {
+  if (const firmware::Personality* personality = firmware::personality_named(text)) return personality;
   return wrong(UrlFault::UnknownPersonality, text);
 }
 
@@ -216,7 +209,7 @@ std::string explain(const UrlError& error) {
       return fmt::format("'{}' is no baud rate: use a number from {} to {}, usually 115200.", part, kLeastBaud,
                          kMostBaud);
     case UrlFault::UnknownPersonality:
-      return fmt::format("There is no virtual machine '{}': choose grbl, rabbit or grblhal.", part);
+      return fmt::format("There is no virtual machine '{}': choose {}.", part, firmware::personality_names());
     case UrlFault::BadSpeed:
       return fmt::format("'{}' is no speed: use max, or a factor from {} to {} (1 is real time).", part, kLeastSpeed,
                          kMostSpeed);
@@ -241,17 +234,9 @@ std::string to_string(const MachineUrl& url) {
     std::string operator()(const TcpAddress& tcp) const { return to_string(tcp); }
     std::string operator()(const PtyAddress& pty) const { return "pty://" + pty.path; }
     std::string operator()(const VirtualAddress& machine) const {
-      return fmt::format("virtual:{}?speed={}", personality_word(machine.personality), to_string(machine.speed));
+      return fmt::format("virtual:{}?speed={}", machine.personality->key(), to_string(machine.speed));
     }
   };
   return std::visit(Printer{}, url);
 }
-
-std::string_view personality_word(Firmware firmware) {
-  for (const auto& [word, known] : kPersonalities) {
-    if (known == firmware) return word;
-  }
-  return "unknown";
-}
-
 }  // namespace kerf::io

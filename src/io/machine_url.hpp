@@ -17,7 +17,7 @@
 #include <string_view>
 #include <variant>
 
-#include "common/vocabulary/firmware.hpp"
+#include "firmware/personality.hpp"
 #include "io/speed.hpp"
 
 namespace kerf::io {
@@ -42,7 +42,7 @@ struct PtyAddress {
 
 /// A virtual controller inside this process.
 struct VirtualAddress {
-  vocabulary::Firmware personality = vocabulary::Firmware::GrblHal;
+  const firmware::Personality* personality = &firmware::personality_of(vocabulary::Firmware::GrblHal);
   Speed speed;
   bool operator==(const VirtualAddress&) const = default;
 };
@@ -76,8 +76,8 @@ struct UrlError {
 /// Where a virtual controller listens: `tcp://ADDRESS:PORT` or `ADDRESS:PORT`; port 0 lets the system choose one.
 [[nodiscard]] std::expected<TcpAddress, UrlError> parse_listen_url(std::string_view text);
 
-/// "grbl", "rabbit" or "grblhal", in any case.
-[[nodiscard]] std::expected<vocabulary::Firmware, UrlError> parse_personality(std::string_view text);
+/// The personality with that key, in any case; never null.
+[[nodiscard]] std::expected<const firmware::Personality*, UrlError> parse_personality(std::string_view text);
 
 /// One sentence for people: what is wrong, and what to write instead.
 [[nodiscard]] std::string explain(const UrlError& error);
@@ -85,8 +85,5 @@ struct UrlError {
 /// The full form, which parse_machine_url() reads back to the same value.
 [[nodiscard]] std::string to_string(const MachineUrl& url);
 [[nodiscard]] std::string to_string(const TcpAddress& address);
-
-/// The word of a personality in URLs and options: "grbl", "rabbit", "grblhal".
-[[nodiscard]] std::string_view personality_word(vocabulary::Firmware firmware);
 
 }  // namespace kerf::io

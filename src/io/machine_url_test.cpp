@@ -6,7 +6,9 @@
 namespace kerf::io {
 namespace {
 
-using vocabulary::Firmware;
+MachineUrl virtual_machine(std::string_view key, Speed speed) {
+  return VirtualAddress{.personality = firmware::personality_named(key), .speed = speed};
+}
 
 MachineUrl parsed(std::string_view text) {
   auto url = parse_machine_url(text);
@@ -28,9 +30,10 @@ TEST(MachineUrl, FullForms) {
   EXPECT_EQ(parsed("tcp://127.0.0.1:23/"), MachineUrl(TcpAddress{"127.0.0.1", 23}));
   EXPECT_EQ(parsed("tcp://[::1]:23"), MachineUrl(TcpAddress{"::1", 23}));
   EXPECT_EQ(parsed("pty:///tmp/kerf-grblhal"), MachineUrl(PtyAddress{"/tmp/kerf-grblhal"}));
-  EXPECT_EQ(parsed("virtual:grblhal?speed=max"), MachineUrl(VirtualAddress{Firmware::GrblHal, Speed{std::nullopt}}));
-  EXPECT_EQ(parsed("virtual:grbl"), MachineUrl(VirtualAddress{Firmware::Grbl, Speed{1.0}}));
-  EXPECT_EQ(parsed("virtual://rabbit?speed=2.5"), MachineUrl(VirtualAddress{Firmware::Rabbit, Speed{2.5}}));
+  EXPECT_EQ(parsed("virtual:grblhal?speed=max"), (virtual_machine("grblhal", Speed{std::nullopt})));
+  EXPECT_EQ(parsed("virtual:grblhal-expr"), virtual_machine("grblhal-expr", Speed{1.0}));
+  EXPECT_EQ(parsed("virtual:grbl"), (virtual_machine("grbl", Speed{1.0})));
+  EXPECT_EQ(parsed("virtual://rabbit?speed=2.5"), (virtual_machine("rabbit", Speed{2.5})));
 }
 
 TEST(MachineUrl, Shorthands) {
@@ -43,7 +46,7 @@ TEST(MachineUrl, Shorthands) {
   EXPECT_EQ(parsed("[fe80::1]:23"), MachineUrl(TcpAddress{"fe80::1", 23}));
   EXPECT_EQ(parsed("virtual:23"), MachineUrl(TcpAddress{"virtual", 23}));  // a host may have any name
   EXPECT_EQ(parsed("virtual"), MachineUrl(VirtualAddress{}));
-  EXPECT_EQ(parsed("VIRTUAL:Rabbit"), MachineUrl(VirtualAddress{Firmware::Rabbit, Speed{1.0}}));
+  EXPECT_EQ(parsed("VIRTUAL:Rabbit"), (virtual_machine("rabbit", Speed{1.0})));
 }
 
 TEST(MachineUrl, EveryFaultIsNamed) {
@@ -74,7 +77,8 @@ TEST(MachineUrl, FaultsSayWhatToWrite) {
   EXPECT_NE(explain(no_port.error()).find("rabbit.local:PORT"), std::string::npos);
   const auto personality = parse_machine_url("virtual:marlin");
   ASSERT_FALSE(personality);
-  EXPECT_EQ(explain(personality.error()), "There is no virtual machine 'marlin': choose grbl, rabbit or grblhal.");
+  EXPECT_EQ(explain(personality.error()),
+            "There is no virtual machine 'marlin': choose grbl, rabbit, grblhal or grblhal-expr.");
 }
 
 TEST(ListenUrl, TakesPortZeroAndNothingButTcp) {

@@ -33,7 +33,7 @@ std::string place_of(const MachineUrl& url) {
     std::string operator()(const TcpAddress& tcp) const { return to_string(tcp).substr(sizeof("tcp://") - 1); }
     std::string operator()(const PtyAddress& pty) const { return pty.path; }
     std::string operator()(const VirtualAddress& machine) const {
-      return fmt::format("the virtual {}", name_of(machine.personality));
+      return fmt::format("the virtual {}", name_of(machine.personality->firmware));
     }
   };
   return std::visit(Printer{}, url);

@@ -16,7 +16,7 @@ class VirtualTransport final : public Transport {
   VirtualTransport(EventLoop& loop, const VirtualAddress& address, LinkCallbacks callbacks)
       : loop_(loop),
         callbacks_(std::move(callbacks)),
-        host_(loop, firmware::VirtualController(firmware::personality_of(address.personality)), address.speed),
+        host_(loop, firmware::VirtualController(*address.personality), address.speed),
         alive_(std::make_shared<bool>(true)) {
     host_.on_output(
         [this](std::string_view bytes) { later([this, text = std::string(bytes)] { callbacks_.received(text); }); });

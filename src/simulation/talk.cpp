@@ -12,10 +12,6 @@ namespace {
 
 using firmware::Input;
 using firmware::WorkcellEvent;
-using vocabulary::Firmware;
-
-constexpr std::array<std::pair<std::string_view, Firmware>, 3> kPersonalities{
-    {{"grbl", Firmware::Grbl}, {"rabbit", Firmware::Rabbit}, {"grblhal", Firmware::GrblHal}}};
 
 constexpr std::array<std::pair<std::string_view, Input>, 6> kSwitches{{{"probe", Input::Probe},
                                                                        {"door", Input::Door},
@@ -138,9 +134,8 @@ std::expected<void, TalkFault> read_header(Talk& talk, std::string_view text) {
   const auto parts = base::split_at_most(base::trim(text), ' ', 2);
   const std::string_view value = parts.size() > 1 ? base::trim(parts[1]) : std::string_view{};
   if (parts[0] == "personality") {
-    const auto firmware = row_of(kPersonalities, value);
-    if (!firmware) return std::unexpected(TalkFault::UnknownPersonality);
-    talk.personality = *firmware;
+    talk.personality = firmware::personality_named(value);
+    if (talk.personality == nullptr) return std::unexpected(TalkFault::UnknownPersonality);
   } else if (parts[0] == "axes" || parts[0] == "tools") {
     const auto count = base::parse_int<int>(value);
     if (!count || *count < 0) return std::unexpected(TalkFault::BadCount);
@@ -199,7 +194,7 @@ bool Talk::moves_switches() const {
 
 std::expected<Talk, TalkSyntaxError> parse_talk(std::string_view text, std::string_view folder_personality) {
   Talk talk;
-  talk.personality = row_of(kPersonalities, folder_personality).value_or(Firmware::Unknown);
+  talk.personality = firmware::personality_named(folder_personality);
   std::size_t number = 0;
   for (const std::string_view row : base::split(text, '\n')) {
     ++number;
@@ -215,7 +210,7 @@ std::expected<Talk, TalkSyntaxError> parse_talk(std::string_view text, std::stri
     if (!action) return std::unexpected(TalkSyntaxError{action.error(), number});
     talk.steps.push_back({.line = number, .text = std::string(line), .action = *std::move(action)});
   }
-  if (talk.personality == Firmware::Unknown) return std::unexpected(TalkSyntaxError{TalkFault::UnknownPersonality, 1});
+  if (talk.personality == nullptr) return std::unexpected(TalkSyntaxError{TalkFault::UnknownPersonality, 1});
   return talk;
 }
 
@@ -228,7 +223,7 @@ std::string_view explain(TalkFault fault) {
       return "this header is none of personality, axes, tools, setting, power-up, card, file, pendant and virtual-only";
     case TalkFault::HeaderAfterStep: return "headers stand before the first step";
     case TalkFault::UnknownPersonality:
-      return "nobody knows who speaks: add '% personality grbl', 'rabbit' or 'grblhal'";
+      return "nobody knows who speaks: add '% personality grbl', 'rabbit', 'grblhal' or 'grblhal-expr'";
     case TalkFault::BadEscape: return "an escape is one of \\r \\n \\t \\\\ and \\xNN";
     case TalkFault::BadTime: return "time is written like '@ +1s' or '@ +200ms'";
     case TalkFault::BadSwitch: return "this is no switch: write for example '@ limit X on' or '@ door open'";

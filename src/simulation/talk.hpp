@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/vocabulary/firmware.hpp"
 #include "firmware/personality.hpp"
 #include "firmware/port.hpp"
 #include "firmware/workcell.hpp"
@@ -61,7 +60,8 @@ struct TalkStep {
 };
 
 struct Talk {
-  vocabulary::Firmware personality = vocabulary::Firmware::Unknown;
+  /// Who speaks; null only while the talk is being read.
+  const firmware::Personality* personality = nullptr;
   /// What the controller was built with.
   firmware::Hardware hardware{};
   /// Lines such as `$22=1`, sent before the talk begins.
@@ -102,7 +102,7 @@ struct TalkSyntaxError {
   bool operator==(const TalkSyntaxError&) const = default;
 };
 
-/// `folder_personality` is who speaks when no header says so: "grbl", "rabbit" or "grblhal", as the folder is named.
+/// `folder_personality` is who speaks when no header says so: the key of a personality, as the folder is named.
 [[nodiscard]] std::expected<Talk, TalkSyntaxError> parse_talk(std::string_view text,
                                                               std::string_view folder_personality);
 

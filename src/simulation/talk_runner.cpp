@@ -40,7 +40,7 @@ firmware::Equipment equipment_of(const Talk& talk) {
 TalkOutcome run_talk(const Talk& talk) {
   const Instant began{};
   Instant now = began;
-  const firmware::Personality built = firmware::built_with(firmware::personality_of(talk.personality), talk.hardware);
+  const firmware::Personality built = firmware::built_with(*talk.personality, talk.hardware);
   firmware::VirtualController controller(built, {}, equipment_of(talk));
   TalkConversation conversation(talk, now);
   // A talk begins with all switches off and places the homing switches that it needs.

@@ -70,8 +70,8 @@ TEST(Talk, MarksBecomeSteps) {
 }
 
 TEST(Talk, FolderSpeaksUnlessAHeaderSaysWho) {
-  EXPECT_EQ(talk_of("-> $I\n").personality, vocabulary::Firmware::Grbl);
-  EXPECT_EQ(talk_of("% personality grblhal\n-> $I\n").personality, vocabulary::Firmware::GrblHal);
+  EXPECT_EQ(talk_of("-> $I\n").personality->key(), "grbl");
+  EXPECT_EQ(talk_of("% personality grblhal-expr\n-> $I\n").personality->key(), "grblhal-expr");
   EXPECT_EQ(parse_talk("-> $I\n", "misc").error().fault, TalkFault::UnknownPersonality);
 }
 

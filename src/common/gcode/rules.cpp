@@ -139,6 +139,12 @@ GcodeRules make_grblhal() {
           .reset_clears_tool_length = false};
 }
 
+GcodeRules make_grblhal_expressions() {
+  GcodeRules rules = make_grblhal();
+  rules.reads_expressions = true;
+  return rules;
+}
+
 }  // namespace
 
 const GcodeRules& rules_for(Firmware firmware) {
@@ -152,6 +158,11 @@ const GcodeRules& rules_for(Firmware firmware) {
     case Firmware::Unknown: break;
   }
   return grbl;
+}
+
+const GcodeRules& rules_for(const vocabulary::Dialect& dialect) {
+  static const GcodeRules expressions = make_grblhal_expressions();
+  return dialect.builds.contains(vocabulary::BuildOption::Expressions) ? expressions : rules_for(dialect.firmware);
 }
 
 }  // namespace kerf::gcode

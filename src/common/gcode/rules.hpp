@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "common/gcode/print_number.hpp"
+#include "common/vocabulary/dialect.hpp"
 #include "common/vocabulary/errors.hpp"
 #include "common/vocabulary/firmware.hpp"
 
@@ -107,6 +108,9 @@ struct GcodeRules {
   /// Program end puts overrides back to 100 % (grblHAL: `$60`).
   bool program_end_restores_overrides = true;
 
+  /// grblHAL built with NGC_EXPRESSIONS_ENABLE: expressions, assignments and O words.
+  bool reads_expressions = false;
+
   /// grblHAL: G92 is kept in storage as well.
   bool stores_g92 = false;
 
@@ -121,5 +125,7 @@ struct GcodeRules {
 
 /// The rules of a firmware; an unknown one is read as Grbl 1.1h.
 [[nodiscard]] const GcodeRules& rules_for(vocabulary::Firmware firmware);
+/// The rules of one build of a firmware.
+[[nodiscard]] const GcodeRules& rules_for(const vocabulary::Dialect& dialect);
 
 }  // namespace kerf::gcode

@@ -2,6 +2,7 @@
 // What a row of the error and alarm tables looks like.
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string_view>
 
@@ -27,6 +28,20 @@ enum class BuildOption : std::uint8_t {
 };
 BOOST_DESCRIBE_ENUM(BuildOption, Usual, Expressions, CutterCompensation, FileSystem, Bluetooth, Driver, FourAxes,
                     FiveAxes, SixAxes, Network)
+
+/// What was compiled into one build.
+class BuildSet {
+ public:
+  constexpr BuildSet(std::initializer_list<BuildOption> options) {
+    for (const BuildOption option : options) bits_ |= 1U << static_cast<unsigned>(option);
+  }
+  [[nodiscard]] constexpr bool contains(BuildOption option) const {
+    return ((bits_ >> static_cast<unsigned>(option)) & 1U) != 0;
+  }
+
+ private:
+  unsigned bits_ = 0;
+};
 
 /// One error or alarm of one firmware, in our own words. `title` fits a headline (no full stop); `text` says the cause
 /// and what to do. Neither contains `|`, `]` or `"`, so the virtual controllers can print them in enumerations.

@@ -31,6 +31,8 @@ constexpr Dialect kUnknown = [] {
 }();
 
 constexpr std::array<const Dialect*, 3> kAll{&dialects::kGrbl, &dialects::kRabbit, &dialects::kGrblHal};
+constexpr std::array<const Dialect*, 4> kAllBuilds{&dialects::kGrbl, &dialects::kRabbit, &dialects::kGrblHal,
+                                                   &dialects::kGrblHalExpressions};
 
 }  // namespace
 
@@ -44,8 +46,9 @@ std::span<const Dialect* const> all_dialects() {
 }
 
 const Dialect* find_dialect(std::string_view key) {
-  const auto at = std::ranges::find_if(kAll, [&](const Dialect* dialect) { return base::iequals(dialect->key, key); });
-  return at == kAll.end() ? nullptr : *at;
+  const auto at =
+      std::ranges::find_if(kAllBuilds, [&](const Dialect* dialect) { return base::iequals(dialect->key, key); });
+  return at == kAllBuilds.end() ? nullptr : *at;
 }
 
 }  // namespace kerf::vocabulary

@@ -109,15 +109,16 @@ BOOST_DESCRIBE_STRUCT(NumberStyle, (),
 /// One firmware, as its reference build behaves.
 struct Dialect {
   Firmware firmware{};
-  std::string_view name;            ///< for people: "grblHAL"
-  std::string_view key;             ///< in URLs and options: "grblhal"
-  std::string_view version;         ///< as `[VER:` prints it: "1.1f"
-  std::string_view build;           ///< as `[VER:` prints it: "20260817"
-  std::string_view welcome;         ///< the line after a reset, complete, without line ends
-  std::string_view welcome_start;   ///< what tells its welcome from another firmware's: "GrblHAL "
-  std::string_view options;         ///< letters of `[OPT:` in the reference build
-  std::string_view new_options;     ///< tokens of `[NEWOPT:` in the reference build
-  std::string_view firmware_field;  ///< of `|FW:` and `[FIRMWARE:`; empty if it prints none
+  std::string_view name;                   ///< for people: "grblHAL"
+  std::string_view key;                    ///< in URLs and options: "grblhal"
+  std::string_view version;                ///< as `[VER:` prints it: "1.1f"
+  std::string_view build;                  ///< as `[VER:` prints it: "20260817"
+  std::string_view welcome;                ///< the line after a reset, complete, without line ends
+  std::string_view welcome_start;          ///< what tells its welcome from another firmware's: "GrblHAL "
+  std::string_view options;                ///< letters of `[OPT:` in the reference build
+  std::string_view new_options;            ///< tokens of `[NEWOPT:` in the reference build
+  std::string_view firmware_field;         ///< of `|FW:` and `[FIRMWARE:`; empty if it prints none
+  BuildSet builds = {BuildOption::Usual};  ///< what this build has beyond the usual
 
   int axes_default = 3;
   int axes_max = 3;
@@ -176,7 +177,7 @@ struct Dialect {
 /// Grbl, Rabbit, grblHAL: those that have a virtual controller.
 [[nodiscard]] std::span<const Dialect* const> all_dialects();
 
-/// The dialect whose `key` is `key`.
+/// The dialect whose `key` is `key`; other builds of a firmware ("grblhal-expr") have keys too.
 [[nodiscard]] const Dialect* find_dialect(std::string_view key);
 
 /// True if `byte` never becomes part of a line that goes to `dialect`'s controller.

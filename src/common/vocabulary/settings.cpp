@@ -142,13 +142,12 @@ std::string unit_of(const SettingMatch& match, AxisMask rotary_axes) {
   return unit;
 }
 
-bool is_usual(const SettingRow& row, int axes) {
+bool is_built(const SettingRow& row, BuildSet builds, int axes) {
   switch (row.build) {
-    case BuildOption::Usual: return true;
     case BuildOption::FourAxes: return axes > kUsualAxes;
     case BuildOption::FiveAxes: return axes > kUsualAxes + 1;
     case BuildOption::SixAxes: return axes > kUsualAxes + 2;
-    default: return false;
+    default: return builds.contains(row.build);
   }
 }
 

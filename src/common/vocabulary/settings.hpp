@@ -162,8 +162,8 @@ struct SettingMatch {
 [[nodiscard]] std::string format_of(const SettingRow& row, int axes);
 /// The unit as `$ES` prints it: `step/deg` instead of `step/mm` for an axis that turns.
 [[nodiscard]] std::string unit_of(const SettingMatch& match, AxisMask rotary_axes);
-/// True if a build with `axes` axes and nothing optional has the row.
-[[nodiscard]] bool is_usual(const SettingRow& row, int axes);
+/// True if a build with these options and `axes` axes has the row.
+[[nodiscard]] bool is_built(const SettingRow& row, BuildSet builds, int axes);
 /// The items of a bit field or radio, in order; unavailable ones are "N/A".
 [[nodiscard]] std::string_view item_of(std::string_view format, int index);
 /// The default of the setting as `$$` prints it; masks over all axes are for three (SettingRow::default_value).

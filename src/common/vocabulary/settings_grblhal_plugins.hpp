@@ -110,7 +110,6 @@ inline constexpr std::array kGrblHalPluginSettings{
     needs_reboot(optional_setting(531, 15, "MQTT broker port", SettingType::Integer, "", "####0")),
     needs_reboot(optional_setting(532, 15, "MQTT username", SettingType::Text, "", "x(32)")),
     needs_reboot(optional_setting(533, 15, "MQTT password", SettingType::Password, "", "x(32)")),
-    optional_setting(534, 1, "Output NGC debug messages", SettingType::Bool),
     needs_reboot(optional_setting(535, 15, "MAC Address", SettingType::Text, "", "x(17)", {}, "17")),
     optional_setting(536, 18, "LED strip 1 length", SettingType::Integer, "", "##0", {}, "255"),
     optional_setting(537, 18, "LED strip 2 length", SettingType::Integer, "", "##0", {}, "255"),

@@ -1,5 +1,7 @@
 // Grbl 1.1h as its reference build behaves (gnea/grbl; protocol.md).
 
+#include "common/vocabulary/dialects/grbl.hpp"
+
 #include "firmware/personalities/personalities.hpp"
 #include "firmware/settings_store.hpp"
 #include "firmware/system_commands.hpp"
@@ -27,6 +29,7 @@ constexpr CommandRow kCommands[] = {
 }  // namespace
 
 const Personality kGrbl = {
+    .speaks = &vocabulary::dialects::kGrbl,
     .firmware = vocabulary::Firmware::Grbl,
     .start = {.blank_memory_error = true,
               .blank_memory_lists_settings = true,

@@ -1,5 +1,7 @@
 // grblHAL at compatibility level 0, as its simulator build behaves (grblHAL/core; protocol.md).
 
+#include "common/vocabulary/dialects/grblhal.hpp"
+
 #include "firmware/personalities/personalities.hpp"
 #include "firmware/settings_store.hpp"
 #include "firmware/system_commands.hpp"
@@ -91,7 +93,8 @@ constexpr std::array<std::string_view, 2> kBuildRows[] = {
 
 }  // namespace
 
-const Personality kGrblHal = {
+constexpr Personality kUsual = {
+    .speaks = &vocabulary::dialects::kGrblHal,
     .firmware = vocabulary::Firmware::GrblHal,
     .start = {.blank_memory_error = true,
               .has_homing_alarm = true,
@@ -132,5 +135,13 @@ const Personality kGrblHal = {
     .help = "$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H $B ~ ! ? ctrl-x",
     .build_rows = kBuildRows,
 };
+
+const Personality kGrblHal = kUsual;
+
+const Personality kGrblHalExpressions = [] {
+  Personality personality = kUsual;
+  personality.speaks = &vocabulary::dialects::kGrblHalExpressions;
+  return personality;
+}();
 
 }  // namespace kerf::firmware

@@ -8,5 +8,6 @@ namespace kerf::firmware {
 extern const Personality kGrbl;
 extern const Personality kRabbit;
 extern const Personality kGrblHal;
+extern const Personality kGrblHalExpressions;
 
 }  // namespace kerf::firmware

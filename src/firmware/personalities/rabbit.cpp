@@ -1,6 +1,8 @@
 // Rabbit GRBL (SourceRabbit/RabbitGRBL; protocol.md): announces itself as 1.6.0, acts as the 1.3a that was recorded
 // (docs/decisions/0006-rabbit-version.md).
 
+#include "common/vocabulary/dialects/rabbit.hpp"
+
 #include "firmware/personalities/personalities.hpp"
 #include "firmware/settings_store.hpp"
 #include "firmware/system_commands.hpp"
@@ -124,6 +126,7 @@ constexpr CommandRow kCommands[] = {
 }  // namespace
 
 const Personality kRabbit = {
+    .speaks = &vocabulary::dialects::kRabbit,
     .firmware = vocabulary::Firmware::Rabbit,
     .start = {.homing_locks = true, .limits_lock = true},
     .homing = {.fixed_cycles = {},

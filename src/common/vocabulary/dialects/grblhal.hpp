@@ -78,4 +78,13 @@ inline constexpr Dialect kGrblHal{
     .ports = {.baud = 115200, .telnet = 23, .websocket = 81},
 };
 
+/// The same core built with NGC_EXPRESSIONS_ENABLE.
+inline constexpr Dialect kGrblHalExpressions = [] {
+  Dialect dialect = kGrblHal;
+  dialect.key = "grblhal-expr";
+  dialect.new_options = "ENUMS,RT+,EXPR,TC,SED";
+  dialect.builds = {BuildOption::Usual, BuildOption::Expressions};
+  return dialect;
+}();
+
 }  // namespace kerf::vocabulary::dialects
