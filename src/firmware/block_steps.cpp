@@ -83,6 +83,10 @@ class BlockSteps {
   void operator()(const gcode::ToolChange&) { steps_.insert(steps_.end(), {Synchronize{}, EnterToolChange{}}); }
   void operator()(const gcode::ProgramPause&) { steps_.insert(steps_.end(), {Synchronize{}, HoldForCycleStart{}}); }
   void operator()(const gcode::ProgramDemarcation& mark) { steps_.emplace_back(Perform{.action = mark}); }
+  void operator()(const gcode::AlarmRequest& request) {
+    if (request.code == 0) return;
+    steps_.emplace_back(RaiseAlarm{.code = static_cast<vocabulary::AlarmCode>(request.code), .by_program = true});
+  }
   void operator()(const gcode::OperatorMessage& message) {
     if (has_motion_ && board_.state != MachineState::Check) {
       board_.motion_messages.push_back({.block = board_.blocks_planned + 1, .text = message.text});
@@ -119,7 +123,12 @@ std::string normalised_block(std::string_view block) {
 std::expected<void, ErrorCode> add_block_steps(Board& board, std::string_view block, Steps& steps) {
   const AxisValues start_mm = board.interpreter.state().position_mm;
   std::vector<gcode::Action> actions;
-  if (const auto result = board.interpreter.interpret(block, actions); !result) return result;
+  if (const auto result = board.interpreter.interpret(block, actions); !result) {
+    // What was done before the block failed stays done: the motion before a macro that does not exist.
+    BlockSteps add{board, start_mm, std::ranges::any_of(actions, is_motion), steps};
+    for (const gcode::Action& action : actions) std::visit(add, action);
+    return result;
+  }
   const auto changes_tool = [](const gcode::Action& action) {
     return std::holds_alternative<gcode::ToolChange>(action);
   };

@@ -84,6 +84,7 @@ Board::Board(const Personality& owner, StoredState memory, Equipment fitted)
       slot{.card = equipment.card},
       block_targets_mm(kMostBlocks) {
   if (equipment.pendant) outbox.fit_pendant();
+  interpreter.watch(facts);
   apply_settings();
   load_offsets();
 }
@@ -99,6 +100,12 @@ void Board::plan_line(const motion::PathLine& line) {
   const auto added = planner.plan(line);
   if (motion_log && added == motion::Planner::Added::Queued) {
     motion_log->planned(lines_read, planner.at(planner.block_count() - 1));
+  }
+  // Without a block the message does not wait.
+  const bool waits_for_it = !motion_messages.empty() && motion_messages.back().block == blocks_planned;
+  if (added == motion::Planner::Added::Dropped && waits_for_it) {
+    say(protocol::Feedback{.text = motion_messages.back().text});
+    motion_messages.pop_back();
   }
 }
 

@@ -16,6 +16,7 @@
 #include "common/vocabulary/machine_state.hpp"
 #include "common/vocabulary/messages.hpp"
 #include "firmware/backlash.hpp"
+#include "firmware/board_facts.hpp"
 #include "firmware/card_slot.hpp"
 #include "firmware/equipment.hpp"
 #include "firmware/file_job.hpp"
@@ -98,6 +99,7 @@ struct Board {
   std::vector<std::string> rejected_settings;
   Outbox outbox;
   gcode::Interpreter interpreter;
+  BoardFacts facts{*this};
   motion::Planner planner;
   motion::Executor executor;
   Workcell workcell;

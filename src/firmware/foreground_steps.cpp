@@ -294,6 +294,7 @@ bool Foreground::finish_probe(const AxisSteps& contact, bool touched, const gcod
   gcode::Offsets& offsets = board_.interpreter.offsets();
   offsets.probe = board_.to_mm(contact);
   offsets.probe_succeeded = touched;
+  offsets.probe_work_offset = board_.interpreter.state().modal.work_offset;
   const bool tells =
       !board_.personality.status.counts_changes || board_.reports(vocabulary::ReportBit::ProbeCoordinates);
   Steps next;
@@ -351,6 +352,8 @@ bool Foreground::operator()(FinishHoming& step) {
 
 bool Foreground::operator()(RaiseAlarm& step) {
   const bool is_news = board_.raise_alarm(step.code);
+  const auto* row = vocabulary::find_code(board_.personality.dialect().alarms, vocabulary::number_of(step.code));
+  if (step.by_program && row != nullptr && row->critical) board_.critical = true;
   if (is_news) insert_front({Freeze{.duration = board_.personality.dialect().alarm_delay, .until = std::nullopt}});
   return true;
 }

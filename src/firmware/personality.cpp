@@ -10,7 +10,8 @@ namespace kerf::firmware {
 
 namespace {
 
-constexpr std::array<const Personality*, 4> kAll = {&kGrbl, &kRabbit, &kGrblHal, &kGrblHalExpressions};
+constexpr std::array<const Personality*, 3> kAll = {&kGrbl, &kRabbit, &kGrblHal};
+constexpr std::array<const Personality*, 4> kAllBuilds = {&kGrbl, &kRabbit, &kGrblHal, &kGrblHalExpressions};
 
 }  // namespace
 
@@ -32,14 +33,14 @@ Personality built_with(const Personality& personality, const Hardware& hardware)
 
 const Personality* personality_named(std::string_view name) {
   const auto found =
-      std::ranges::find_if(kAll, [&](const Personality* one) { return base::iequals(one->key(), name); });
-  return found == kAll.end() ? nullptr : *found;
+      std::ranges::find_if(kAllBuilds, [&](const Personality* one) { return base::iequals(one->key(), name); });
+  return found == kAllBuilds.end() ? nullptr : *found;
 }
 
 std::string personality_names() {
   std::string names;
-  for (const Personality* one : kAll) {
-    if (one == kAll.back())
+  for (const Personality* one : kAllBuilds) {
+    if (one == kAllBuilds.back())
       names += " or ";
     else if (!names.empty())
       names += ", ";

@@ -272,6 +272,7 @@ struct Personality {
   bool restore_resets = true;  ///< `$RST=` ends in a reset
   bool restores_network = false;
   bool tool_length_stays_metric = false;  ///< `[TLO:]` in spite of `$13`
+  bool tells_parameters = false;          ///< grblHAL: `$#=5`, `$#=_x`
   bool parameters_pause = false;          ///< Rabbit waits 100 ms before the ok of `$#`
   bool stored_writes_synchronise = false;
   bool checks_whole_arcs = false;         ///< an arc whose end lies outside the travel does not even begin
@@ -304,9 +305,9 @@ struct Personality {
 /// The personality whose key is `name`, in any case; null if there is none.
 [[nodiscard]] const Personality* personality_named(std::string_view name);
 
-/// All of them, in the order of vocabulary::Firmware, the usual build of each first.
+/// The usual build of each firmware, in the order of vocabulary::Firmware.
 [[nodiscard]] std::span<const Personality* const> all_personalities();
-/// Their keys as a sentence lists them: "grbl, rabbit, grblhal or grblhal-expr".
+/// The keys of all builds as a sentence lists them: "grbl, rabbit, grblhal or grblhal-expr".
 [[nodiscard]] std::string personality_names();
 
 }  // namespace kerf::firmware

@@ -194,7 +194,9 @@ motion::MotionSettings SettingsStore::motion() const {
 void SettingsStore::configure(gcode::InterpreterSettings& settings) const {
   settings.axes = axes_;
   settings.laser_mode = is_laser();
+  settings.report_inches = flag(setting::kReportInches);
   if (!personality_.has_extended_settings) return;
+  settings.prints_debug = flag(setting::kDebugMessages);
   settings.ignore_tool_change = number(setting::kToolChangeMode) == 4.0;
   settings.g92_volatile = flag(setting::kG92Volatile);
   settings.restore_overrides_at_end = flag(setting::kRestoreOverrides);

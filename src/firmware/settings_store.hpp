@@ -138,6 +138,7 @@ inline constexpr int kLockedOffsets = 486;
 inline constexpr int kKeepTool = 485;
 inline constexpr int kSpindleOffDelay = 539;
 inline constexpr int kCoolantOnDelay = 673;
+inline constexpr int kDebugMessages = 534;
 inline constexpr int kResetActions = 676;
 }  // namespace setting
 

@@ -73,6 +73,8 @@ struct HomeAxes {
 };
 struct RaiseAlarm {
   vocabulary::AlarmCode code{};
+  /// A program did it: nothing is stopped or dropped, but a critical alarm locks the machine.
+  bool by_program = false;
 };
 /// A target lies outside the travel: hold, then ALARM:2.
 struct StopAtSoftLimit {

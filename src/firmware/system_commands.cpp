@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "common/base/text.hpp"
+#include "common/gcode/numbers.hpp"
+#include "common/gcode/print_format.hpp"
 #include "firmware/block_steps.hpp"
 
 namespace kerf::firmware {
@@ -72,6 +74,7 @@ SystemCommands::Result SystemCommands::dispatch(const ParsedCommand& command, St
     case Command::SetToolReference: return set_tool_reference();
     case Command::ProbeToolPlate: return std::unexpected(ErrorCode::InvalidStatement);
     case Command::Parameters:
+      if (command.has_value && board_.personality.tells_parameters) return tell_parameter(command.value);
       if (command.has_value) return std::unexpected(ErrorCode::InvalidStatement);
       reporter_.say_parameters();
       if (board_.personality.parameters_pause) steps.emplace_back(Freeze{.duration = kRabbitListPause});
@@ -125,6 +128,21 @@ SystemCommands::Result SystemCommands::dispatch_listing(const ParsedCommand& com
     case Command::ListSpindlesForMachines: listing_.spindles(true); break;
     default: break;
   }
+  return {};
+}
+
+// `$#=5` by number, anything else is a name.
+SystemCommands::Result SystemCommands::tell_parameter(std::string_view text) {
+  const std::string name{text};
+  std::uint8_t at = 0;
+  std::uint32_t number = 0;
+  const bool is_number = gcode::read_whole(name.c_str(), at, number) == ErrorCode::Ok;
+  const auto id = static_cast<std::uint16_t>(number);
+  const auto value = is_number ? board_.interpreter.parameter(id) : board_.interpreter.parameter(text);
+  board_.say(protocol::NamedParameter{
+      .name = is_number ? std::to_string(id) : name,
+      .value =
+          value ? gcode::trimmed_number(*value, gcode::parameter_decimals(board_.interpreter.settings())) : "N/A"});
   return {};
 }
 

@@ -27,6 +27,7 @@ class SystemCommands {
   Result understand(std::string_view line, Steps& steps);
   Result dispatch(const ParsedCommand& command, Steps& steps);
   Result dispatch_listing(const ParsedCommand& command);
+  Result tell_parameter(std::string_view text);
   Result describe_setting(const ParsedCommand& command);
   Result read_setting(const ParsedCommand& command);
   Result write_setting(const ParsedCommand& command, Steps& steps);

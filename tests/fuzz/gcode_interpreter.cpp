@@ -14,8 +14,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   using kerf::vocabulary::Firmware;
   if (size == 0) return 0;
   constexpr Firmware kFirmwares[] = {Firmware::Grbl, Firmware::Rabbit, Firmware::GrblHal};
-  const GcodeRules& rules = rules_for(kFirmwares[bytes[0] % 3]);
-  Interpreter interpreter(rules, {.axes = 3 + bytes[0] / 3 % 4, .laser_mode = bytes[0] >= 128});
+  const GcodeRules& rules = bytes[0] % 4 == 3 ? rules_for(*kerf::vocabulary::find_dialect("grblhal-expr"))
+                                              : rules_for(kFirmwares[bytes[0] % 4]);
+  Interpreter interpreter(rules, {.axes = 3 + bytes[0] / 4 % 4, .laser_mode = bytes[0] >= 128});
   LineReader reader(rules.line);
   std::vector<Action> actions;
   std::string words;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "common/gcode/acts.hpp"
+#include "common/gcode/macros.hpp"
 #include "common/gcode/numbers.hpp"
 
 namespace kerf::gcode {
@@ -25,25 +26,6 @@ void note_offset_change(BlockContext& context) {
 
 void store(BlockContext& context, StoredOffset which) {
   context.out.push_back(StoredOffsetWrite{.which = which});
-}
-
-/// Macros that grblHAL has built in; there are no files to take others from.
-ErrorCode run_macro(const MacroRequest& macro) {
-  const bool built_in = macro.id >= 1 && macro.id <= 7;
-  if (built_in && macro.repeats > 1) return ErrorCode::ValueOutOfRange;
-  switch (macro.id) {
-    case 1: return macro.has_q ? ErrorCode::Ok : ErrorCode::ValueWordMissing;  // read or write a setting
-    case 2:                                                                    // tool offset, without a table
-      return macro.has_q && macro.has_r ? ErrorCode::IllegalToolNumber : ErrorCode::ValueWordMissing;
-    case 3: return macro.has_i ? ErrorCode::Ok : ErrorCode::ValueWordMissing;  // parameter by number
-    case 4: return ErrorCode::Ok;                                              // machine state
-    case 5:                                                                    // select a probe
-      if (!macro.has_q) return ErrorCode::ValueWordMissing;
-      return macro.q == 0.0F ? ErrorCode::Ok : ErrorCode::ValueOutOfRange;
-    case 6: return ErrorCode::Ok;                  // no spindle delay
-    case 7: return ErrorCode::UnsupportedCommand;  // Modbus
-    default: return ErrorCode::ValueOutOfRange;
-  }
 }
 
 void move_home(Block& block, BlockContext& context) {
@@ -117,7 +99,7 @@ ErrorCode act_macro(Block& block, BlockContext& context) {
   }
   if (block.macro != MacroCall::NonModal) return ErrorCode::Ok;
   block.finished = true;
-  return run_macro(block.macro_request);
+  return finish_macro(block.macro_request, context);
 }
 
 // In laser mode only G1, G2 and G3 burn, and S takes effect with the motion instead of stopping it.
@@ -347,12 +329,12 @@ ErrorCode act_modal_macro(Block& block, BlockContext& context) {
   ParserState& state = context.state;
   const bool moved = block.axis_command == AxisCommand::Motion &&
                      (block.modal.motion == MotionMode::Rapid || block.modal.motion == MotionMode::Linear);
-  if (moved) return state.modal_macro ? run_macro(*state.modal_macro) : ErrorCode::Ok;
+  if (moved) return state.modal_macro ? call_macro(*state.modal_macro, context) : ErrorCode::Ok;
   if (!block.groups.has(Group::G16)) return ErrorCode::Ok;
   if (block.macro == MacroCall::End) state.modal_macro.reset();
-  if (block.macro == MacroCall::ModalEachBlock) return run_macro(block.macro_request);
+  if (block.macro == MacroCall::ModalEachBlock) return call_macro(block.macro_request, context);
   if (block.macro == MacroCall::Subprogram && !context.settings.check_mode)
-    return run_macro({.id = to_int32(block.p), .repeats = block.l});
+    return finish_macro({.id = to_int32(block.p), .repeats = block.l}, context);
   return ErrorCode::Ok;
 }
 

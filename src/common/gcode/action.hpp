@@ -182,8 +182,14 @@ struct ProgramDemarcation {
   bool operator==(const ProgramDemarcation&) const = default;
 };
 
+/// grblHAL's `O1 ALARM [n]`: the alarm comes before the line's answer.
+struct AlarmRequest {
+  int code = 0;
+  bool operator==(const AlarmRequest&) const = default;
+};
+
 using Action = std::variant<LinearMove, ArcMove, ProbeMove, Dwell, SpindleChange, SpindleSpeedChange, CoolantChange,
                             WorkOffsetChange, StoredOffsetWrite, ToolTableWrite, ToolSelect, ToolChange, ProgramPause,
-                            ProgramEnd, OperatorMessage, OverrideControl, ProgramDemarcation>;
+                            ProgramEnd, OperatorMessage, OverrideControl, ProgramDemarcation, AlarmRequest>;
 
 }  // namespace kerf::gcode

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/gcode/flow.hpp"
 #include "common/gcode/interpreter.hpp"
 #include "common/gcode/parser_state.hpp"
 
@@ -79,6 +80,7 @@ class WordSet {
     for (const char letter : letters) take(letter);
   }
   [[nodiscard]] bool is_empty() const { return bits_ == 0; }
+  [[nodiscard]] bool is_only(char letter) const { return bits_ == bit(letter); }
 
  private:
   static constexpr std::uint32_t bit(char letter) { return 1U << (letter == '$' ? 26 : letter - 'A'); }
@@ -161,6 +163,15 @@ struct Block {
   std::optional<Tool> tool_entry;
 
   MacroRequest macro_request;
+  /// Values of all words as they were written, A to Z (grblHAL).
+  std::array<float, 26> written{};
+  FlowLabel label;
+  /// `#1=5`: done when the block is.
+  struct Assignment {
+    std::uint16_t parameter = 0;
+    float value = 0.0F;
+  };
+  std::vector<Assignment> assignments;
   std::string message;
 
   [[nodiscard]] bool has_axis(std::size_t axis) const { return (axis_words >> axis & 1U) != 0; }
@@ -174,10 +185,16 @@ struct BlockContext {
   ParserState& state;
   Offsets& offsets;
   std::vector<Action>& out;
+  Parameters& parameters;
+  FlowControl& flow;
+  MachineFacts* machine = nullptr;
 
   [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(settings.axes); }
   /// Is there such an entry in the tool table? (grblHAL)
   [[nodiscard]] bool knows_tool(float number) const { return number <= static_cast<float>(settings.tools); }
+  [[nodiscard]] ParameterValues values() const {
+    return {.written = parameters, .state = state, .offsets = offsets, .settings = settings, .machine = machine};
+  }
   /// The table; made when it is first asked for.
   [[nodiscard]] std::vector<Tool>& tools() const {
     offsets.tools.resize(static_cast<std::size_t>(settings.tools) + 1);
@@ -199,11 +216,13 @@ struct BlockBuffer {
 /// Strips a line as the firmware's interpreter does; `(MSG,...)` and `%` become what the block says besides its words.
 struct PreparedText {
   std::string message;
+  bool has_message = false;
   bool demarcates = false;
+  /// `(abort,...)`.
+  ErrorCode error = ErrorCode::Ok;
 };
 /// In a jog `/` has no meaning: it does not begin the line.
-PreparedText prepare_text(std::string_view line, bool jog, const GcodeRules& rules, const InterpreterSettings& settings,
-                          BlockBuffer& buffer);
+PreparedText prepare_text(std::string_view line, bool jog, BlockContext& context, BlockBuffer& buffer);
 
 /// Reads the words of a NUL-terminated text into the block.
 [[nodiscard]] ErrorCode collect_words(const char* text, Block& block, BlockContext& context);

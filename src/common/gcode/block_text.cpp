@@ -1,7 +1,9 @@
 // A line becomes bare words: blanks and comments go, letters become capitals, each firmware in its own way
 // (protocol.md 6.3).
 
+#include "common/base/text.hpp"
 #include "common/gcode/block.hpp"
+#include "common/gcode/print_format.hpp"
 
 namespace kerf::gcode {
 
@@ -20,10 +22,10 @@ char upper(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
 
-bool begins_with_msg(std::string_view comment) {
-  return comment.size() >= 4 && upper(comment[0]) == 'M' && upper(comment[1]) == 'S' && upper(comment[2]) == 'G' &&
-         comment[3] == ',';
-}
+constexpr std::string_view kMessage = "MSG,";
+constexpr std::string_view kDebug = "DEBUG,";
+constexpr std::string_view kPrint = "PRINT,";
+constexpr std::string_view kAbort = "ABORT,";
 
 /// Rabbit shows what follows the fourth character of a comment that has MSG somewhere.
 void note_comment(std::string_view comment, PreparedText& prepared) {
@@ -52,15 +54,34 @@ PreparedText collapse(std::string_view line, BlockBuffer& buffer) {
   return prepared;
 }
 
-/// The first `(MSG,text)` of a line, without the blanks before the text.
-void note_message(std::string_view comment, PreparedText& prepared) {
-  if (!prepared.message.empty() || !begins_with_msg(comment)) return;
-  comment.remove_prefix(4);
-  while (!comment.empty() && comment.front() == ' ') comment.remove_prefix(1);
-  prepared.message = comment;
+/// The first message of a line: `(MSG,text)` as it stands, and in builds with expressions `(PRINT,...)` and
+/// `(DEBUG,...)` with values put in. A comment that is none may end the program with `(ABORT,text)`.
+void hear_comment(std::string_view comment, BlockContext& context, PreparedText& prepared) {
+  const bool has_expressions = context.rules.reads_expressions;
+  const bool is_debug = has_expressions && base::starts_with_ignoring_case(comment, kDebug);
+  const bool is_print = has_expressions && base::starts_with_ignoring_case(comment, kPrint);
+  if (!prepared.has_message) {
+    if (is_print || (is_debug && context.settings.prints_debug)) {
+      prepared.message = substitute_parameters(comment.substr(kPrint.size()), context.rules, context.values());
+      prepared.has_message = true;
+    } else if (base::starts_with_ignoring_case(comment, kMessage)) {
+      comment.remove_prefix(kMessage.size());
+      while (comment.starts_with(' ')) comment.remove_prefix(1);
+      prepared.message = comment;
+      prepared.has_message = true;
+    }
+  }
+  if (!has_expressions || prepared.has_message || is_debug || comment.empty()) return;
+  const bool aborts = base::starts_with_ignoring_case(comment, kAbort);
+  prepared.error = aborts ? ErrorCode::UserDefined : ErrorCode::Ok;
+  if (!aborts) return;
+  const std::string text = substitute_parameters(comment.substr(kAbort.size()), context.rules, context.values());
+  context.out.push_back(OperatorMessage{.text = "Error: " + text});
 }
 
-PreparedText normalize(std::string_view line, bool jog, const InterpreterSettings& settings, BlockBuffer& buffer) {
+PreparedText normalize(std::string_view line, bool jog, BlockContext& context, BlockBuffer& buffer) {
+  const InterpreterSettings& settings = context.settings;
+  const bool speaks = !settings.check_mode && !context.flow.skips();
   PreparedText prepared;
   while (!line.empty() && !is_printable(line.front())) line.remove_prefix(1);
   if (line.empty() || line.front() == ';') return prepared;
@@ -77,7 +98,7 @@ PreparedText normalize(std::string_view line, bool jog, const InterpreterSetting
     if (c == '(') {
       comment_at = at + 1;
     } else if (c == ')') {
-      if (in_comment && !settings.check_mode) note_message(line.substr(comment_at, at - comment_at), prepared);
+      if (in_comment && speaks) hear_comment(line.substr(comment_at, at - comment_at), context, prepared);
       comment_at = std::string_view::npos;
     } else if (!in_comment) {
       buffer.append(upper(c));
@@ -90,16 +111,15 @@ PreparedText normalize(std::string_view line, bool jog, const InterpreterSetting
 
 }  // namespace
 
-PreparedText prepare_text(std::string_view line, bool jog, const GcodeRules& rules, const InterpreterSettings& settings,
-                          BlockBuffer& buffer) {
+PreparedText prepare_text(std::string_view line, bool jog, BlockContext& context, BlockBuffer& buffer) {
   buffer.length = 0;
   PreparedText prepared;
-  switch (rules.block_text) {
+  switch (context.rules.block_text) {
     case BlockText::AsRead:
       for (const char c : line) buffer.append(c);
       break;
     case BlockText::Collapsed: prepared = collapse(line, buffer); break;
-    case BlockText::WithMessages: prepared = normalize(line, jog, settings, buffer); break;
+    case BlockText::WithMessages: prepared = normalize(line, jog, context, buffer); break;
   }
   buffer.text[buffer.length] = '\0';
   return prepared;

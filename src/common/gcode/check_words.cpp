@@ -1,4 +1,5 @@
 #include "common/gcode/checks.hpp"
+#include "common/gcode/macros.hpp"
 #include "common/gcode/numbers.hpp"
 
 namespace kerf::gcode {
@@ -46,15 +47,18 @@ ErrorCode check_macro_words(Block& block, BlockContext& context) {
       block.macro == MacroCall::NonModal || block.macro == MacroCall::Modal || block.macro == MacroCall::ModalEachBlock;
   if (!takes_arguments) return ErrorCode::Ok;
 
-  block.macro_request.has_i = block.words.has('I');
-  block.macro_request.has_q = block.words.has('Q');
-  block.macro_request.has_r = block.words.has('R');
-  block.macro_request.q = block.q;
+  constexpr std::string_view kArguments = "ABCDEFHIJKMQRSTUVWXYZ";
+  for (const char letter : kArguments)
+    if (block.words.has(letter)) block.macro_request.words |= 1U << static_cast<unsigned>(letter - 'A');
+  block.macro_request.values = block.written;
   block.axis_words = block.ijk_words = 0;
   block.groups = {};
   block.groups.add(Group::G16);
-  block.words.take_all("ABCIJKEFHMQRSTUVWXYZ");
-  if (block.macro != MacroCall::NonModal) state.modal_macro = block.macro_request;
+  block.words.take_all(kArguments);
+  // The call of G65 begins here; a block that fails later leaves it open.
+  if (block.macro == MacroCall::NonModal)
+    return begin_macro(block.macro_request, context) ? ErrorCode::Ok : ErrorCode::FlowControlStackOverflow;
+  state.modal_macro = block.macro_request;
   block.finished = block.macro == MacroCall::Modal;
   return ErrorCode::Ok;
 }

@@ -116,9 +116,9 @@ struct FunctionRow {
 
 // EXISTS, PRM and ATAN read their arguments themselves.
 constexpr FunctionRow kFunctions[] = {
-    {"ABS", plain<kAbsolute>}, {"ACOS", arc_cosine},      {"ASIN", arc_sine},    {"COS", plain<kCosine>},
+    {"ABS", plain<kAbsolute>},    {"ACOS", arc_cosine},   {"ASIN", arc_sine},       {"COS", plain<kCosine>},
     {"EXP", plain<kExponential>}, {"FIX", plain<kFloor>}, {"FUP", plain<kCeiling>}, {"LN", logarithm},
-    {"ROUND", plain<kRound>},  {"SIN", plain<kSine>},     {"SQRT", square_root}, {"TAN", plain<kTangent>},
+    {"ROUND", plain<kRound>},     {"SIN", plain<kSine>},  {"SQRT", square_root},    {"TAN", plain<kTangent>},
 };
 
 }  // namespace
@@ -228,7 +228,7 @@ ErrorCode ExpressionReader::read_name(std::uint8_t& at, std::string& name) const
   if (text_[at++] != '<') return ErrorCode::BadNumberFormat;
   std::uint8_t next = at;
   char c = '\0';
-  while ((c = text_[next++]) != '\0' && c != '>' && name.size() <= Parameters::kLongestName) {
+  while ((c = text_[next++]) != '\0' && c != '>' && name.size() < Parameters::kLongestName) {
     name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     ++at;
   }
@@ -320,9 +320,10 @@ ErrorCode ExpressionReader::read_setting(std::uint8_t& at, float& value) {
   if (text_[at] != ']') return ErrorCode::ExpressionSyntaxError;
   ++at;
   const auto setting = values_.machine != nullptr ? values_.machine->setting(id) : std::nullopt;
-  if (!setting) return ErrorCode::ExpressionArgumentOutOfRange;
+  if (!setting || setting->kind == SettingNumber::Kind::NotNumber) return ErrorCode::ExpressionArgumentOutOfRange;
   value = setting->value;
-  if (bit >= 0 && setting->is_whole) value = static_cast<float>((to_uint32(value) >> static_cast<unsigned>(bit)) & 1U);
+  const bool asks_bit = bit >= 0 && setting->kind == SettingNumber::Kind::Whole;
+  if (asks_bit) value = static_cast<float>((to_uint32(value) >> static_cast<unsigned>(bit)) & 1U);
   return ErrorCode::Ok;
 }
 

@@ -25,9 +25,16 @@ ErrorCode run(std::span<const Step> steps, Block& block, BlockContext& context) 
   return ErrorCode::Ok;
 }
 
+/// The last assignment of a block comes first: of two to the same parameter the first one stays.
+void assign(const Block& block, Parameters& parameters) {
+  for (auto at = block.assignments.rbegin(); at != block.assignments.rend(); ++at)
+    parameters.set(at->parameter, at->value);
+}
+
 ErrorCode read_block(std::string_view line, Block& block, BlockContext& context) {
   BlockBuffer buffer;
-  PreparedText prepared = prepare_text(line, block.jog, context.rules, context.settings, buffer);
+  PreparedText prepared = prepare_text(line, block.jog, context, buffer);
+  if (prepared.error != ErrorCode::Ok) return prepared.error;
   block.message = std::move(prepared.message);
   if (prepared.demarcates) context.out.push_back(ProgramDemarcation{});
   if (buffer.length == 0 && !context.rules.runs_empty_blocks) {
@@ -36,7 +43,7 @@ ErrorCode read_block(std::string_view line, Block& block, BlockContext& context)
     return ErrorCode::Ok;
   }
   if (const ErrorCode error = collect_words(buffer.text.data(), block, context); error != ErrorCode::Ok) return error;
-  return run(context.rules.checks, block, context);
+  return block.finished ? ErrorCode::Ok : run(context.rules.checks, block, context);
 }
 
 }  // namespace
@@ -44,25 +51,49 @@ ErrorCode read_block(std::string_view line, Block& block, BlockContext& context)
 Interpreter::Interpreter(const GcodeRules& rules, InterpreterSettings settings) : rules_(&rules), settings_(settings) {}
 
 std::expected<void, ErrorCode> Interpreter::interpret(std::string_view line, std::vector<Action>& out) {
-  BlockContext context{.rules = *rules_, .settings = settings_, .state = state_, .offsets = offsets_, .out = out};
+  BlockContext context = context_for(out);
   Block block;
   start_block(block, state_, false);
   ErrorCode error = read_block(line, block, context);
   if (error == ErrorCode::Ok && !block.finished) error = run(rules_->acts, block, context);
-  if (error == ErrorCode::Ok) return {};
+  if (error == ErrorCode::Ok) {
+    if (!block.finished) assign(block, parameters_);
+    return {};
+  }
   fail();
   return std::unexpected(error);
 }
 
+BlockContext Interpreter::context_for(std::vector<Action>& out) {
+  return {.rules = *rules_,
+          .settings = settings_,
+          .state = state_,
+          .offsets = offsets_,
+          .out = out,
+          .parameters = parameters_,
+          .flow = flow_,
+          .machine = machine_};
+}
+
+std::optional<float> Interpreter::parameter(std::uint16_t id) {
+  std::vector<Action> none;
+  return context_for(none).values().get(id);
+}
+
+std::optional<float> Interpreter::parameter(std::string_view name) {
+  std::vector<Action> none;
+  return context_for(none).values().get(name);
+}
+
 std::expected<JogMove, ErrorCode> Interpreter::interpret_jog(std::string_view after_dollar_j) {
   std::vector<Action> said;
-  BlockContext context{.rules = *rules_, .settings = settings_, .state = state_, .offsets = offsets_, .out = said};
+  BlockContext context = context_for(said);
   Block block;
   start_block(block, state_, true);
   BlockBuffer buffer;
-  prepare_text(after_dollar_j, true, *rules_, settings_, buffer);
-  ErrorCode error = collect_words(buffer.text.data(), block, context);
-  if (error == ErrorCode::Ok) error = run(rules_->checks, block, context);
+  ErrorCode error = prepare_text(after_dollar_j, true, context, buffer).error;
+  if (error == ErrorCode::Ok) error = collect_words(buffer.text.data(), block, context);
+  if (error == ErrorCode::Ok && !block.finished) error = run(rules_->checks, block, context);
   if (error != ErrorCode::Ok) {
     fail();
     return std::unexpected(error);
@@ -83,6 +114,7 @@ void Interpreter::reset() {
   if (!rules_->reset_clears_tool) state_.tool = state_.tool_pending = old.tool;
   if (rules_->reset_clears_g92) offsets_.g92 = {};
   if (rules_->reset_clears_tool_length) offsets_.tool_length = {};
+  flow_.clear();
   reload_offsets();
 }
 

@@ -1,13 +1,19 @@
 #pragma once
 // One line of G-code in, the machine's actions or the firmware's error code out.
 
+#include <cstdint>
 #include <expected>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/gcode/action.hpp"
+#include "common/gcode/flow.hpp"
+#include "common/gcode/interpreter_settings.hpp"
+#include "common/gcode/machine_facts.hpp"
 #include "common/gcode/offsets.hpp"
+#include "common/gcode/parameters.hpp"
 #include "common/gcode/parser_state.hpp"
 #include "common/gcode/rules.hpp"
 #include "common/vocabulary/errors.hpp"
@@ -16,37 +22,7 @@ namespace kerf::gcode {
 
 using vocabulary::ErrorCode;
 
-/// What the interpreter must know of the machine's settings and state.
-struct InterpreterSettings {
-  /// Axes of the machine, from X on.
-  int axes = 3;
-  /// `$32`=1 where the spindle can do it.
-  bool laser_mode = false;
-  /// State Check: Grbl then leaves the stored offset alone at M2 and M30.
-  bool check_mode = false;
-  /// grblHAL: `$B` or its pin; lines that begin with `/` are then skipped.
-  bool block_delete = false;
-  /// grblHAL: 0x88, `$O` or its pin switched optional stops off, so M1 does nothing.
-  bool optional_stop_disabled = false;
-  /// grblHAL `$341`=4: M6 answers ok and nothing happens.
-  bool ignore_tool_change = false;
-  /// grblHAL `$384`: G92 is not stored.
-  bool g92_volatile = false;
-  /// grblHAL `$60`: overrides go back to 100 % at program end.
-  bool restore_overrides_at_end = false;
-  /// grblHAL `$486`, bit n: G59.n+1 may not be changed.
-  unsigned locked_work_offsets = 0;
-  /// grblHAL: tools in the table; without one G43 and G43.2 do not exist.
-  int tools = 0;
-  /// grblHAL `$376`: bit n set where axis n turns; G20 leaves it alone.
-  vocabulary::AxisMask rotary_axes = 0;
-  /// grblHAL `$41` bit 2: M56 exists.
-  bool parking_override_control = false;
-  /// grblHAL `$28`.
-  float g73_retract_mm = 0.1F;
-  /// grblHAL: the line of the file that is run, for blocks without N; 0 while none is.
-  std::int32_t file_line = 0;
-};
+struct BlockContext;
 
 /// Executes lines in the order and with the arithmetic of one firmware. A rejected line changes nothing, except for
 /// what the firmware itself lets slip (GcodeRules::tool_word_acts_at_once). Pure: no clock, no I/O; soft limits and
@@ -55,8 +31,8 @@ class Interpreter {
  public:
   explicit Interpreter(const GcodeRules& rules, InterpreterSettings settings = {});
 
-  /// One complete line as LineReader delivers it, `$` lines excluded. Appends to `out`, which is left alone when the
-  /// line is rejected.
+  /// One complete line as LineReader delivers it, `$` lines excluded. Appends to `out`; of a rejected line the
+  /// owner carries out nothing but what it says.
   std::expected<void, ErrorCode> interpret(std::string_view line, std::vector<Action>& out);
 
   /// The text after `$J=`. Changes no state: the owner checks the travel, then calls sync_position with the target.
@@ -79,6 +55,12 @@ class Interpreter {
   /// M5 and S0, after a spindle setting was changed (Rabbit).
   void stop_spindle();
 
+  /// What parameters may ask of the machine; it must outlive the interpreter.
+  void watch(MachineFacts& machine) { machine_ = &machine; }
+  /// A parameter as `$#=5` and `$#=_x` print it; nothing if there is none.
+  [[nodiscard]] std::optional<float> parameter(std::uint16_t id);
+  [[nodiscard]] std::optional<float> parameter(std::string_view name);
+
   /// Work offset, G92 and tool length together: machine position minus this is the work position.
   [[nodiscard]] AxisValues work_coordinate_offset() const;
 
@@ -92,6 +74,7 @@ class Interpreter {
   [[nodiscard]] const InterpreterSettings& settings() const { return settings_; }
 
  private:
+  [[nodiscard]] BlockContext context_for(std::vector<Action>& out);
   /// What grblHAL forgets when any line fails.
   void fail();
 
@@ -99,6 +82,9 @@ class Interpreter {
   InterpreterSettings settings_;
   ParserState state_;
   Offsets offsets_;
+  Parameters parameters_;
+  FlowControl flow_;
+  MachineFacts* machine_ = nullptr;
 };
 
 }  // namespace kerf::gcode

@@ -13,10 +13,17 @@ namespace kerf::gcode {
 inline constexpr vocabulary::Firmware kAllFirmwares[] = {vocabulary::Firmware::Grbl, vocabulary::Firmware::Rabbit,
                                                          vocabulary::Firmware::GrblHal};
 
+/// grblHAL built with expressions.
+inline const GcodeRules& expression_rules() {
+  return rules_for(*vocabulary::find_dialect("grblhal-expr"));
+}
+
 /// An interpreter that is fed bytes, with what it answered and did.
 struct Bench {
   explicit Bench(vocabulary::Firmware firmware, InterpreterSettings settings = {})
-      : interpreter(rules_for(firmware), settings), reader(rules_for(firmware).line) {}
+      : Bench(rules_for(firmware), settings) {}
+  explicit Bench(const GcodeRules& rules, InterpreterSettings settings = {})
+      : interpreter(rules, settings), reader(rules.line) {}
 
   /// The answer to one line: 0 or the error's number.
   int send(std::string line) {

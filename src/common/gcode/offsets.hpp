@@ -35,6 +35,8 @@ struct Offsets {
   /// Machine position of the last probe contact, and whether there was one.
   AxisValues probe{};
   bool probe_succeeded = false;
+  /// The work offset in force at that contact.
+  std::uint8_t probe_work_offset = 0;
 
   bool operator==(const Offsets&) const = default;
 };

@@ -75,7 +75,7 @@ constexpr NumberRow kNumbered[] = {
     {5181, 5189, [](const Values& values, int id) { return axis_value(values, values.offsets.g30, axis_of(id)); }},
     {5191, 5199,
      [](const Values& values, int id) { return axis_value(values, values.state.scale_factor, axis_of(id)); }},
-    {5210, 5210, [](const Values& values, int) { return truth(values.state.g92_applied); }},
+    {5210, 5210, [](const Values& values, int) { return truth(values.offsets.g92 != AxisValues{}); }},
     {5211, 5219, [](const Values& values, int id) { return axis_value(values, values.offsets.g92, axis_of(id)); }},
     {5220, 5220, [](const Values& values, int) { return static_cast<float>(values.state.modal.work_offset) + 1.0F; }},
     {5221, 5230, work_offset},
@@ -185,7 +185,8 @@ constexpr NameRow kNamed[] = {
     {"_units_per_minute", is_feed_mode<FeedMode::UnitsPerMinute>},
     {"_units_per_rev", is_feed_mode<FeedMode::UnitsPerRevolution>},
     {"_coord_system", [](const Values& values) { return coordinate_system_number(values.state.modal.work_offset); }},
-    {"_tool_offset", [](const Values& values) { return truth(values.state.modal.tool_length != ToolLengthMode::None); }},
+    {"_tool_offset",
+     [](const Values& values) { return truth(values.state.modal.tool_length != ToolLengthMode::None); }},
     {"_retract_r_plane",
      [](const Values& values) { return truth(values.state.modal.retract == RetractMode::Previous); }},
     {"_retract_old_z",
@@ -237,7 +238,8 @@ constexpr NameRow kNamed[] = {
     {"_probe2_state", always<-1>},
     {"_toolsetter_state", always<-1>},
     {"_active_probe", always<0>},
-    {"_homed_state", [](const Values& values) { return truth(values.machine != nullptr && values.machine->is_homed()); }},
+    {"_homed_state",
+     [](const Values& values) { return truth(values.machine != nullptr && values.machine->is_homed()); }},
     {"_homed_axes",
      [](const Values& values) {
        return values.machine != nullptr ? static_cast<float>(values.machine->homed_axes()) : 0.0F;
@@ -271,7 +273,8 @@ std::optional<float> ParameterValues::get(std::string_view name) const {
 bool ParameterValues::set(std::string_view name, float value) const {
   const auto clean = clean_name(name);
   if (!clean) return false;
-  return find_predefined(*clean) != nullptr || written.set(*clean, value);
+  if (find_predefined(*clean) == nullptr) written.set(*clean, value);
+  return true;
 }
 
 }  // namespace kerf::gcode

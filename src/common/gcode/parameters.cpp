@@ -13,7 +13,7 @@ std::optional<std::string> clean_name(std::string_view name) {
   std::string clean;
   for (const char letter : name) {
     if (static_cast<signed char>(letter) <= ' ') continue;
-    if (clean.size() > Parameters::kLongestName) break;
+    if (clean.size() == Parameters::kLongestName) break;
     clean += letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
   }
   if (clean.empty() || clean == "_") return std::nullopt;
@@ -43,10 +43,8 @@ std::optional<float> Parameters::get(std::string_view name) const {
   return found->second;
 }
 
-bool Parameters::set(std::string_view name, float value) {
-  if (name.size() > kLongestName) return false;
+void Parameters::set(std::string_view name, float value) {
   named_.insert_or_assign(std::pair{owner_of(name), std::string{name}}, value);
-  return true;
 }
 
 bool Parameters::begin_call(int owner) {

@@ -16,7 +16,8 @@ namespace kerf::gcode {
 class Parameters {
  public:
   static constexpr std::uint16_t kLastWritable = 5060;
-  static constexpr std::size_t kLongestName = 30;
+  /// One more than the firmware means to take: its check for 30 compares with what can never be.
+  static constexpr std::size_t kLongestName = 31;
   static constexpr std::size_t kDeepestCall = 10;
 
   [[nodiscard]] static constexpr bool is_writable(std::uint16_t id) { return id > 0 && id <= kLastWritable; }
@@ -27,8 +28,7 @@ class Parameters {
 
   /// `name` as clean_name() gives it.
   [[nodiscard]] std::optional<float> get(std::string_view name) const;
-  /// False for names that are too long.
-  bool set(std::string_view name, float value);
+  void set(std::string_view name, float value);
 
   /// `owner` tells the calls of one level apart; false if calls are nested too deeply.
   bool begin_call(int owner);

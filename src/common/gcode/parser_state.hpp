@@ -1,6 +1,7 @@
 #pragma once
 // The modal state of the interpreter: what stays in force from block to block.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -114,10 +115,11 @@ struct SavedModalState {
 struct MacroRequest {
   std::int32_t id = 0;
   std::uint8_t repeats = 1;
-  bool has_i = false;
-  bool has_q = false;
-  bool has_r = false;
-  float q = 0.0F;
+  /// The words that it gets as #1 to #26, as they were written: bit n is a letter, A the first.
+  std::uint32_t words = 0;
+  std::array<float, 26> values{};
+
+  [[nodiscard]] bool has(char letter) const { return ((words >> static_cast<unsigned>(letter - 'A')) & 1U) != 0; }
   bool operator==(const MacroRequest&) const = default;
 };
 

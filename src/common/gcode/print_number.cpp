@@ -10,7 +10,8 @@ namespace kerf::gcode {
 namespace {
 
 /// grblHAL core nuts_bolts.c.
-constexpr std::array<float, 5> kHalfOfLastPlace = {0.5F, 0.05F, 0.005F, 0.0005F, 0.00005F};
+constexpr std::array<float, 10> kHalfOfLastPlace = {0.5F,      0.05F,      0.005F,      0.0005F,      0.00005F,
+                                                    0.000005F, 0.0000005F, 0.00000005F, 0.000000005F, 0.0000000005F};
 
 float shifted(float value, int decimals) {
   for (; decimals >= 2; decimals -= 2) value *= 100.0F;

@@ -67,6 +67,11 @@ RC_GTEST_PROP(InterpreterProperty, TakesAnyBytes, (const std::vector<std::string
       (void)bench.interpreter.interpret_jog(line);
     }
   }
+  Bench bench(expression_rules());
+  for (const std::string& line : lines) {
+    bench.send(line);
+    (void)bench.interpreter.interpret_jog(line);
+  }
 }
 
 }  // namespace

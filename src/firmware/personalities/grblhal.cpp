@@ -126,6 +126,7 @@ constexpr Personality kUsual = {
     .reads_lines_in_sleep = true,
     .sleep_needs_setting = true,
     .interrupted_program_ends = true,
+    .tells_parameters = true,
     .checks_whole_arcs = true,
     .has_work_offset_sync_bit = true,
     .loop = {.pass = std::chrono::microseconds{10}, .for_line = 1, .for_block = 2, .to_start = 1},
