@@ -170,6 +170,15 @@ bool Board::reports(vocabulary::ReportBit bit) const {
   return vocabulary::has(settings.mask(setting::kReportMask), bit);
 }
 
+AxisSteps Board::to_steps(const AxisValues& mm) const {
+  AxisSteps steps{};
+  const AxisValues& steps_per_mm = planner.settings().steps_per_mm;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(settings.axes()); ++axis) {
+    steps.at(axis) = static_cast<std::int32_t>(std::lround(mm.at(axis) * steps_per_mm.at(axis)));
+  }
+  return steps;
+}
+
 AxisValues Board::to_mm(const AxisSteps& steps) const {
   AxisValues mm{};
   const AxisValues& steps_per_mm = planner.settings().steps_per_mm;

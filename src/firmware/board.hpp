@@ -179,6 +179,8 @@ struct Board {
   [[nodiscard]] bool reports(vocabulary::ReportBit bit) const;
   [[nodiscard]] AxisSteps steps() const { return executor.steps_at(now); }
   [[nodiscard]] AxisValues position_mm() const;
+  /// Motor steps nearest to a place in mm.
+  [[nodiscard]] AxisSteps to_steps(const AxisValues& mm) const;
   [[nodiscard]] AxisValues to_mm(const AxisSteps& steps) const;
   [[nodiscard]] const Workcell::Geometry& geometry() const { return geometry_; }
   [[nodiscard]] bool guards_hard_limits() const { return guards_hard_limits_; }

@@ -153,7 +153,8 @@ void Cycle::halt(Halt reason) {
     board_.hold_complete = false;
     to_restore_ = board_.accessories;
   }
-  if (reason == Halt::Stop) {
+  const bool is_forgotten = reason == Halt::Stop || reason == Halt::JogCancel || reason == Halt::MotionCancel;
+  if (is_forgotten) {
     board_.executor.begin_stop(board_.now);
   } else {
     board_.executor.begin_hold(board_.now);

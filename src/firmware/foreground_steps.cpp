@@ -135,7 +135,9 @@ bool Foreground::operator()(PlanJog& step) {
 }
 
 bool Foreground::operator()(Synchronize& /*step*/) {
-  if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
+  // A tool change that is waited for in the same block has no motion before it.
+  const bool waits = cycle_.is_suspended() && board_.state != MachineState::Tool;
+  if (waits) return wait_for(WaitingFor::CycleStart);
   if (board_.state != MachineState::Check) cycle_.auto_start();
   return cycle_.is_finished() || wait_for(WaitingFor::MotionToFinish);
 }
@@ -149,7 +151,7 @@ bool Foreground::operator()(Dwell& step) {
     until_.reset();
     return wait_for(WaitingFor::CycleStart);
   }
-  if (!until_) until_ = board_.now + step.left;
+  if (!until_) until_ = motion::dwell_end(board_.planner.rules(), board_.now, step.left);
   if (board_.now < *until_) return wait_for(WaitingFor::Time);
   until_.reset();
   return true;
@@ -243,6 +245,7 @@ bool Foreground::begin_probe(Probe& step) {
   if (board_.state == MachineState::Check) return true;
   gcode::Offsets& offsets = board_.interpreter.offsets();
   offsets.probe_succeeded = false;
+  if (board_.personality.probe_begins_at_target) offsets.probe = board_.to_mm(board_.to_steps(step.move.target_mm));
   const bool triggered = board_.probe_triggered() != step.move.away;
   if (triggered || board_.workcell.is_active(Input::ProbeDisconnected)) {
     board_.interpreter.sync_position(step.move.start_mm);

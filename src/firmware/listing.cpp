@@ -243,7 +243,7 @@ std::vector<std::string> Listing::new_options() const {
   std::vector<std::string> flags = {"ENUMS", settings.flag(setting::kLegacyRealtime) ? "RT+" : "RT-"};
   if (settings.flag(setting::kHoming)) flags.emplace_back("HOME");
   if (board_.equipment.pendant) flags.emplace_back("MPG");
-  if (settings.number(setting::kMode) == 2.0) flags.emplace_back("LATHE");
+  if (settings.is_lathe()) flags.emplace_back("LATHE");
   if (board_.personality.dialect().builds.contains(vocabulary::BuildOption::Expressions)) flags.emplace_back("EXPR");
   if (settings.number(setting::kToolChangeMode) != 4.0) flags.emplace_back("TC");
   flags.emplace_back("SED");

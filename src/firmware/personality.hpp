@@ -278,7 +278,8 @@ struct Personality {
   bool checks_whole_arcs = false;         ///< an arc whose end lies outside the travel does not even begin
   bool has_work_offset_sync_bit = false;  ///< `$10` bit 8; otherwise every change of WCO waits for the motion
   bool soft_limits_in_check = false;
-  bool skips_empty_dwell = false;  ///< a dwell of no time does not even wait for the motion
+  bool probe_begins_at_target = false;  ///< [PRB:] has the target of a probe motion until the probe says more
+  bool skips_empty_dwell = false;       ///< a dwell of no time does not even wait for the motion
   /// The board's spindle takes its power from the step interrupt, so `$32`=1 is laser mode; else S changes wait for the
   /// motion all the same (motion.md 1.5).
   bool has_laser_spindle = false;

@@ -24,7 +24,8 @@ std::vector<std::string> parser_state_words(const Board& board) {
   const gcode::ModalWordsStyle style = {.inches = board.settings.flag(setting::kReportInches),
                                         .axes = board.settings.axes(),
                                         .parking_override_control = board.personality.has_extended_settings &&
-                                                                    board.settings.flag(kParking, kParkingOverride)};
+                                                                    board.settings.flag(kParking, kParkingOverride),
+                                        .lathe = board.settings.is_lathe()};
   std::string text;
   gcode::append_modal_words(board.interpreter.state(), board.interpreter.offsets(), board.interpreter.rules(), style,
                             text);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "common/base/text.hpp"
 #include "firmware/leading_number.hpp"
@@ -70,9 +71,37 @@ Checked check_decimal_grblhal(const SettingRow& row, std::string_view text) {
   return print_decimal(row, value);
 }
 
+/// What grblHAL's read_uint makes of a value: one `+`, digits, then anything; a point may only be followed by zeros.
+std::optional<std::uint32_t> leading_count(std::string_view text) {
+  constexpr std::uint32_t kTen = 10;
+  constexpr std::uint32_t kMostBeforeDigit = 429496729;
+  constexpr int kSafeDigits = 9;
+  constexpr std::uint32_t kLastDigitMax = 4;
+  if (text.starts_with('+')) text.remove_prefix(1);
+  std::uint32_t value = 0;
+  int digits = 0;
+  bool behind_point = false;
+  bool has_digit = false;
+  for (const char letter : text) {
+    if (letter == '.' && !behind_point) {
+      behind_point = true;
+      continue;
+    }
+    if (!base::is_digit(letter)) break;
+    const auto digit = static_cast<std::uint32_t>(letter - '0');
+    has_digit = true;
+    if (!behind_point && (digit != 0 || value != 0)) ++digits;
+    if (behind_point && digit != 0) return std::nullopt;
+    // Zeros behind the point count as digits here too.
+    if ((digits <= kSafeDigits || digit <= kLastDigitMax) && value <= kMostBeforeDigit) value = value * kTen + digit;
+  }
+  if (!has_digit) return std::nullopt;
+  return value;
+}
+
 Checked check_integer_grblhal(const SettingsStore& store, const SettingMatch& match, std::string_view text) {
   const SettingRow& row = *match.row;
-  const auto value = base::parse_int<std::uint32_t>(text);
+  const auto value = leading_count(text);
   if (!value) return std::unexpected(ErrorCode::BadNumberFormat);
   const std::uint64_t values = count_of_values(row, store.format_of(match), store.axes());
   const auto as_number = static_cast<double>(*value);

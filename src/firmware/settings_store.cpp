@@ -171,6 +171,10 @@ vocabulary::AxisValues SettingsStore::axis_values(int id) const {
   return values;
 }
 
+bool SettingsStore::is_lathe() const {
+  return personality_.has_extended_settings && number(setting::kMode) == 2.0;
+}
+
 bool SettingsStore::is_laser() const {
   constexpr double kLaserType = 3.0;
   const bool has_laser = personality_.has_laser_spindle || number("Spindle/Type") == kLaserType;
@@ -198,6 +202,8 @@ void SettingsStore::configure(gcode::InterpreterSettings& settings) const {
   if (!personality_.has_extended_settings) return;
   settings.prints_debug = flag(setting::kDebugMessages);
   settings.ignore_tool_change = number(setting::kToolChangeMode) == 4.0;
+  settings.lathe_mode = is_lathe();
+  settings.spindle_rpm_max = static_cast<float>(number(setting::kSpindleMax));
   settings.g92_volatile = flag(setting::kG92Volatile);
   settings.restore_overrides_at_end = flag(setting::kRestoreOverrides);
   settings.locked_work_offsets = mask(setting::kLockedOffsets);

@@ -46,6 +46,8 @@ class SettingsStore {
   [[nodiscard]] const Slot* find(std::string_view key) const;
 
   /// Value of setting `id` (of its axis `axis`); 0 if this firmware has none.
+  /// `$32`=2 of grblHAL.
+  [[nodiscard]] bool is_lathe() const;
   [[nodiscard]] double number(int id, int axis = 0) const;
   [[nodiscard]] bool flag(int id, unsigned bit = 0) const;
   /// Value of a setting that only has a name, radios by position; 0 if this firmware has none.

@@ -42,6 +42,11 @@ TEST(SettingsStore, GrblHalChecks) {
                                  {"481", "0", "0"},
                                  {"481", "50", nullptr, ErrorCode::SettingOutOfRange},
                                  {"22", "6", "0"},
+                                 {"3", "+1", "1"},
+                                 {"3", "1x", "1"},
+                                 {"3", "1 ", "1"},
+                                 {"3", "1.5", nullptr, ErrorCode::BadNumberFormat},
+                                 {"3", "--1", nullptr, ErrorCode::BadNumberFormat},
                                  {"140", "1", nullptr, ErrorCode::SettingDisabled}});
 }
 

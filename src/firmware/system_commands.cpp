@@ -350,7 +350,9 @@ SystemCommands::Result SystemCommands::restore(const ParsedCommand& command, Ste
   if (offsets) {
     board_.stored.offsets.clear();
     board_.stored.tools.clear();
+    const auto tool_length = board_.interpreter.offsets().tool_length;
     board_.load_offsets();
+    board_.interpreter.offsets().tool_length = tool_length;
   }
   // Rabbit counts the startup lines among its settings.
   if (everything || (settings && names)) {

@@ -188,7 +188,8 @@ class CaseRun {
   /// just ahead of a reset costs that line.
   void lose_line() {
     on_wire_ = wire_.size();
-    if (was_answered_now_ && next_ < lines_.size()) {
+    // grblHAL's recorder looks at the lines only when the firmware has said them all.
+    if (was_answered_now_ && resets_after_alarm_ && next_ < lines_.size()) {
       ++next_;
       awaits_answer_ = true;
     }

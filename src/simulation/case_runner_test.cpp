@@ -1,5 +1,6 @@
 #include "simulation/case_runner.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include <gtest/gtest.h>
@@ -44,6 +45,26 @@ TEST(CaseRunner, AnAlarmOfGrblIsResetAndSwallowsTheNextLine) {
 TEST(CaseRunner, InjectedBytesArriveInTheirTime) {
   const auto record =
       run_case({.id = "a", .lines = {"M0"}, .inject = {{.after = 600ms, .byte = '~'}}}, machine_of(Firmware::GrblHal));
+  EXPECT_EQ(record.answers, std::vector<std::string>{"ok"});
+}
+
+TEST(CaseRunner, RestoringSettingsCostsNoLineOnGrblHal) {
+  const auto record = run_case({.id = "a", .lines = {"$RST=#", "G0X1"}}, machine_of(Firmware::GrblHal));
+  EXPECT_EQ(record.answers, (std::vector<std::string>{"ok", "ok"}));
+  EXPECT_FALSE(record.parser_state.empty());
+}
+
+TEST(CaseRunner, AProbeThatBeginsInContactLeavesItsTarget) {
+  const auto record = run_case({.id = "a", .lines = {"G38.4Z-5F100"}}, machine_of(Firmware::GrblHal));
+  EXPECT_EQ(record.alarms, std::vector<std::string>{"ALARM:4"});
+  const auto probe =
+      std::ranges::find(record.offsets, std::string{"PRB"}, [](const auto& entry) { return entry.first; });
+  ASSERT_NE(probe, record.offsets.end());
+  EXPECT_EQ(probe->second, "0.000,0.000,-5.000:0");
+}
+
+TEST(CaseRunner, AToolChangeLetsTheRestOfItsBlockPass) {
+  const auto record = run_case({.id = "a", .lines = {"M6M3T1S100"}}, machine_of(Firmware::GrblHal));
   EXPECT_EQ(record.answers, std::vector<std::string>{"ok"});
 }
 

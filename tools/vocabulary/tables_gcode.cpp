@@ -33,6 +33,8 @@ std::string_view group_name(gcode::Group group) {
     case Group::G11: return "G11 scaling";
     case Group::G12: return "G12 work offset";
     case Group::G13: return "G13 path control";
+    case Group::G14: return "G14 spindle speed mode";
+    case Group::G15: return "G15 diameter or radius";
     case Group::G16: return "G16 macros";
     case Group::M4: return "M4 program flow";
     case Group::M6: return "M6 tool change";

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numbers>
 
 #include "common/gcode/acts.hpp"
 #include "common/gcode/macros.hpp"
@@ -26,6 +27,17 @@ void note_offset_change(BlockContext& context) {
 
 void store(BlockContext& context, StoredOffset which) {
   context.out.push_back(StoredOffsetWrite{.which = which});
+}
+
+/// G96: the speed for the place at which the motion begins; without a motion it stays (grblHAL gcode.c).
+float speed_at_surface(const Block& block, const BlockContext& context) {
+  const ParserState& state = context.state;
+  if (block.modal.motion == MotionMode::None || block.modal.motion == MotionMode::Rapid) return state.spindle_rpm;
+  const std::size_t across = axes_of(block.modal.plane).second;
+  const float radius_mm = state.position_mm[across] - state.work_offset_mm[across] - context.offsets.g92[across] -
+                          context.offsets.tool_length[across];
+  if (radius_mm <= 0.0F) return state.surface_rpm_max;
+  return std::min(state.surface_rpm_max, state.surface_mm_per_min / (radius_mm * 2.0F * std::numbers::pi_v<float>));
 }
 
 void move_home(Block& block, BlockContext& context) {
@@ -65,6 +77,7 @@ void end_program(BlockContext& context) {
   modal.feed_mode = FeedMode::UnitsPerMinute;
   modal.work_offset = 0;
   modal.spindle = SpindleDirection::Off;
+  modal.surface_speed = false;
   modal.coolant = {};
   modal.overrides.feed = modal.overrides.spindle = true;
   if (!context.settings.check_mode) {
@@ -123,9 +136,12 @@ ErrorCode act_feed(Block& block, BlockContext& context) {
 
 ErrorCode act_spindle_speed(Block& block, BlockContext& context) {
   ParserState& state = context.state;
+  if (state.modal.surface_speed) block.s = speed_at_surface(block, context);
   if (state.spindle_rpm == block.s && !block.spindle_force_sync) return ErrorCode::Ok;
-  if (state.modal.spindle != SpindleDirection::Off && !block.laser_is_motion)
+  if (state.modal.spindle != SpindleDirection::Off && !block.laser_is_motion) {
+    state.commanded_rpm = block.s;
     context.out.push_back(SpindleSpeedChange{.rpm = block.laser_disable ? 0.0F : block.s});
+  }
   state.spindle_rpm = block.s;
   return ErrorCode::Ok;
 }
@@ -177,6 +193,7 @@ ErrorCode act_spindle(Block& block, BlockContext& context) {
   ParserState& state = context.state;
   if (state.modal.spindle == block.modal.spindle) return ErrorCode::Ok;
   state.modal.spindle = block.modal.spindle;
+  state.commanded_rpm = state.spindle_rpm;
   context.out.push_back(
       SpindleChange{.direction = block.modal.spindle, .rpm = block.laser_disable ? 0.0F : state.spindle_rpm});
   return ErrorCode::Ok;
@@ -265,6 +282,7 @@ ErrorCode act_modes(Block& block, BlockContext& context) {
   ModalState& modal = context.state.modal;
   modal.plane = block.modal.plane;
   modal.inches = block.modal.inches;
+  modal.diameter = block.modal.diameter;
   modal.incremental = block.modal.incremental;
   if (block.groups.has(Group::G10)) modal.retract = block.modal.retract;
   return ErrorCode::Ok;

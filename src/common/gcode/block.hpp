@@ -31,6 +31,8 @@ enum class Group : std::uint8_t {
   G11,  // scaling
   G12,  // work offset
   G13,  // path control
+  G14,  // spindle speed mode (lathe)
+  G15,  // diameter or radius (lathe)
   G16,  // macro call
   M4,   // program flow
   M6,   // tool change
@@ -132,6 +134,7 @@ struct Block {
   /// Axis words, later the target in machine coordinates, mm.
   AxisValues xyz{};
   std::array<float, 3> ijk{};
+  float d = 0.0F;
   float f = 0.0F;
   float h = 0.0F;
   float k_pitch = 0.0F;

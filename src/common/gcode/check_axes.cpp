@@ -185,6 +185,8 @@ float block_offset(const Block& block, const BlockContext& context, std::size_t 
 
 ErrorCode convert_units(Block& block, BlockContext& context) {
   block.plane = axes_of(block.modal.plane);
+  // Both halvings and inches are exact or rounded once, so their order does not matter.
+  if (block.modal.diameter && block.has_axis(0)) block.xyz[0] *= 0.5F;
   if (!block.modal.inches) return ErrorCode::Ok;
   for (std::size_t axis = 0; axis < context.axes(); ++axis) {
     const bool turns = (context.settings.rotary_axes >> axis & 1U) != 0;

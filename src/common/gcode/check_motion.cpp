@@ -237,6 +237,8 @@ ErrorCode check_motion_grblhal(Block& block, BlockContext& context) {
   if (block.axis_command != AxisCommand::Motion) return ErrorCode::Ok;
   if (motion == MotionMode::Rapid) return allow_no_axes(block);
   if (!block.modal.canned_cycle) block.modal.retract = RetractMode::Previous;
+  if (block.modal.surface_speed && (block.modal.spindle == SpindleDirection::Off || block.s == 0.0F))
+    return ErrorCode::SpindleNotRunning;
   const bool needs_encoder =
       motion == MotionMode::SpindleSynchronized || motion == MotionMode::RigidTap || motion == MotionMode::Thread;
   if (needs_encoder) return ErrorCode::UnsupportedCommand;

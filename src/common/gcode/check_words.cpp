@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "common/gcode/checks.hpp"
 #include "common/gcode/macros.hpp"
 #include "common/gcode/numbers.hpp"
@@ -163,8 +165,45 @@ ErrorCode check_spindle_grblhal(Block& block, BlockContext& context) {
     }
   }
   if (block.modal.feed_mode == FeedMode::UnitsPerRevolution) return ErrorCode::UnsupportedCommand;
+  if (const ErrorCode error = check_surface_speed_mode(block, context); error != ErrorCode::Ok) return error;
   if (block.words.has('S') && block.s < 0.0F) return ErrorCode::NegativeValue;
+  if (context.state.modal.surface_speed) {
+    set_surface_speed(block, context);
+    return ErrorCode::Ok;
+  }
   return check_spindle_speed(block, context);
+}
+
+// G96 and G97 act while the block is still being checked (grblHAL gcode.c).
+ErrorCode check_surface_speed_mode(Block& block, BlockContext& context) {
+  ParserState& state = context.state;
+  if (!block.groups.has(Group::G14)) {
+    block.modal.surface_speed = state.modal.surface_speed;
+    return ErrorCode::Ok;
+  }
+  const float limit = context.settings.spindle_rpm_max;
+  if (block.modal.surface_speed) {
+    if (!block.words.has('S')) return ErrorCode::ValueWordMissing;
+    if (block.words.has('D') && block.d < 0.0F) return ErrorCode::NegativeValue;
+    state.surface_rpm_max = block.words.has('D') ? std::min(block.d, limit) : limit;
+    block.words.take('D');
+  } else if (state.modal.surface_speed) {
+    state.spindle_rpm = state.commanded_rpm;
+  }
+  state.modal.surface_speed = block.modal.surface_speed;
+  return ErrorCode::Ok;
+}
+
+void set_surface_speed(Block& block, BlockContext& context) {
+  constexpr float kMmPerFoot = 25.4F * 12.0F;
+  constexpr float kMmPerMetre = 1000.0F;
+  ParserState& state = context.state;
+  if (block.words.has('S')) {
+    block.s *= block.modal.inches ? kMmPerFoot : kMmPerMetre;
+    state.surface_mm_per_min = block.s;
+  } else {
+    block.s = state.surface_rpm_max;
+  }
 }
 
 ErrorCode check_tool_set(Block& block, BlockContext& context) {
@@ -188,6 +227,7 @@ ErrorCode check_tool_set(Block& block, BlockContext& context) {
 // What changes nothing counts as not there; a jog may have it.
 ErrorCode forget_unchanged_modes(Block& block, BlockContext& context) {
   const ModalState& now = context.state.modal;
+  if (block.modal.diameter == now.diameter) block.groups.remove(Group::G15);
   if (block.modal.coolant == now.coolant) block.groups.remove(Group::M8);
   if (block.modal.work_offset == now.work_offset) block.groups.remove(Group::G12);
   if (block.modal.overrides == now.overrides) block.groups.remove(Group::M9);

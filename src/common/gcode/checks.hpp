@@ -19,6 +19,9 @@ ErrorCode check_spindle_speed(Block& block, BlockContext& context);
 ErrorCode check_spindle_grblhal(Block& block, BlockContext& context);
 ErrorCode check_tool_set(Block& block, BlockContext& context);
 ErrorCode check_overrides(Block& block, BlockContext& context);
+/// G96 and G97, and what S means with them (lathe).
+ErrorCode check_surface_speed_mode(Block& block, BlockContext& context);
+void set_surface_speed(Block& block, BlockContext& context);
 ErrorCode forget_unchanged_modes(Block& block, BlockContext& context);
 ErrorCode check_dwell(Block& block, BlockContext& context);
 ErrorCode check_pins(Block& block, BlockContext& context);

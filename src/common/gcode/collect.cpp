@@ -182,6 +182,8 @@ class Collector {
       if (candidate.hundredths == number_.hundredths) row = &candidate;
 
     const CommandRow& first = rows.front();
+    const bool is_lathe_word = first.meaning == Meaning::Diameter || first.meaning == Meaning::SurfaceSpeed;
+    if (is_lathe_word && !context_.settings.lathe_mode) return ErrorCode::UnsupportedCommand;
     if (row == nullptr) {
       if (first.claims_before_fraction && first.claim == Claim::IfFree && is_claimed())
         return ErrorCode::AxisCommandConflict;
@@ -242,6 +244,8 @@ class Collector {
         block_.override_word = OverrideWord::Parking;
         break;
       case Meaning::SavedState: block_.saved_state = static_cast<SavedState>(row.argument); break;
+      case Meaning::Diameter: modal.diameter = row.argument != 0; break;
+      case Meaning::SurfaceSpeed: modal.surface_speed = row.argument != 0; break;
       case Meaning::Pin: block_.pin_word = static_cast<PinWord>(row.argument); break;
     }
     return row.group;
@@ -293,6 +297,7 @@ class Collector {
         block_.ijk_words = static_cast<std::uint8_t>(block_.ijk_words | 1U << at);
         break;
       }
+      case 'D': block_.d = value_; break;
       case 'E': block_.e = static_cast<std::uint8_t>(number_.whole); break;
       case 'F': block_.f = value_; break;
       case 'H': block_.h = value_; break;

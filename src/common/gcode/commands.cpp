@@ -205,7 +205,7 @@ constexpr CommandRow kRabbitM[] = {
     pin(68, PinWord::Analog),
 };
 
-// grblHAL core gcode.c, without lathe mode, cutter compensation, I/O ports and user M-codes.
+// grblHAL core gcode.c, without cutter compensation, I/O ports and user M-codes.
 constexpr CommandRow kGrblHalG[] = {
     motion(0, MotionMode::Rapid),
     motion(1, MotionMode::Linear),
@@ -214,6 +214,8 @@ constexpr CommandRow kGrblHalG[] = {
     kG4,
     else_unsupported(motion(5, MotionMode::CubicSpline)),
     with_fraction(motion(5, MotionMode::QuadraticSpline), 10),
+    word(7, Group::G15, Meaning::Diameter, 1),
+    word(8, Group::G15, Meaning::Diameter, 0),
     kG10,
     kG17,
     kG18,
@@ -273,6 +275,8 @@ constexpr CommandRow kGrblHalG[] = {
     kG93,
     kG94,
     word(95, Group::G5, Meaning::FeedMode, code(FeedMode::UnitsPerRevolution)),
+    word(96, Group::G14, Meaning::SurfaceSpeed, 1),
+    word(97, Group::G14, Meaning::SurfaceSpeed, 0),
     word(98, Group::G10, Meaning::Retract, code(RetractMode::Previous)),
     word(99, Group::G10, Meaning::Retract, code(RetractMode::RPosition)),
 };

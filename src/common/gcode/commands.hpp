@@ -35,6 +35,8 @@ enum class Meaning : std::uint8_t {
   ParkingOverride,
   SavedState,
   Pin,
+  Diameter,      // G7 and G8: only in lathe mode
+  SurfaceSpeed,  // G96 and G97: only in lathe mode
 };
 
 /// Does a command want the axis words for itself?

@@ -20,6 +20,10 @@ struct InterpreterSettings {
   bool optional_stop_disabled = false;
   /// grblHAL `$341`=4: M6 answers ok and nothing happens.
   bool ignore_tool_change = false;
+  /// grblHAL `$32`=2: G7, G8, G96 and G97 exist.
+  bool lathe_mode = false;
+  /// grblHAL `$30`, what G96 without D allows.
+  float spindle_rpm_max = 0.0F;
   /// grblHAL `$384`: G92 is not stored.
   bool g92_volatile = false;
   /// grblHAL `$60`: overrides go back to 100 % at program end.

@@ -140,11 +140,13 @@ void append_modal_words(const ParserState& state, const Offsets& offsets, const 
   words.add(motion_word(state, rabbit));
   words.add(kWorkOffsetWords[modal.work_offset]);
   if (all_groups && has_g92(offsets, style.axes)) words.add("G92");
+  if (style.lathe) words.add(modal.diameter ? "G7" : "G8");
   words.add(plane_word(modal.plane));
   words.add(modal.inches ? "G20" : "G21");
   if (state.modal_macro) words.add("G66");
   words.add(modal.incremental ? "G91" : "G90");
   words.add(feed_word(modal.feed_mode));
+  if (style.lathe) words.add(modal.surface_speed ? "G96" : "G97");
   if (all_groups) {
     words.add("G40");
     words.add(tool_length_word(modal.tool_length));

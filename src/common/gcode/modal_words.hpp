@@ -15,6 +15,8 @@ struct ModalWordsStyle {
   int axes = 3;
   /// grblHAL `$41` bit 2: M56 is shown.
   bool parking_override_control = false;
+  /// grblHAL `$32`=2: G7 or G8 and G96 or G97 are shown.
+  bool lathe = false;
 };
 
 /// Appends `G0 G54 ... S0`, without brackets, in the firmware's order and number format.

@@ -96,6 +96,10 @@ struct ModalState {
   ToolLengthMode tool_length = ToolLengthMode::None;
   RetractMode retract = RetractMode::Previous;
   bool scaling = false;
+  /// Lathe: X words are diameters (G7).
+  bool diameter = false;
+  /// Lathe: S is a speed at the surface of the work (G96).
+  bool surface_speed = false;
   SpindleDirection spindle = SpindleDirection::Off;
   Coolant coolant;
   OverridePermissions overrides;
@@ -128,6 +132,11 @@ struct ParserState {
   /// mm/min, or 1/min in inverse time mode.
   float feed_rate = 0.0F;
   float spindle_rpm = 0.0F;
+  /// What the spindle was last told; G97 goes back to it.
+  float commanded_rpm = 0.0F;
+  /// G96: mm/min at the surface, and the rpm that D allows.
+  float surface_mm_per_min = 0.0F;
+  float surface_rpm_max = 0.0F;
   /// Present tool, as `T` of [GC:].
   std::uint32_t tool = 0;
   /// Tool that T selected for the next M6 (grblHAL).

@@ -77,12 +77,13 @@ void Executor::begin_stop(Instant now) {
   advance_to(now);
   if (stage_ == Stage::Idle || preparer_.is_holding()) return;
   const auto slots = static_cast<std::size_t>(rules_.segment_slots);
-  if (!rules_.cancel_drops_segments || stage_ != Stage::Stepping || segment_count_ < slots) {
+  if (!rules_.cancel_drops_segments || stage_ == Stage::Locking || segment_count_ < slots) {
     preparer_.begin_hold();
     return;
   }
   // Keep the executing segment, one more if that is almost done, and those that slow down already.
-  const std::int64_t left = current_.ticks - ticks_until(counts_at(now));
+  const bool between_segments = stage_ == Stage::Draining;
+  const std::int64_t left = between_segments ? 0 : current_.ticks - ticks_until(counts_at(now));
   std::size_t kept = left < 3 || left < (current_.ticks >> 3) ? 2 : 1;
   const auto nth = [this](std::size_t n) -> const Segment& { return segments_[(first_segment_ + n) % kMostSegments]; };
   while (kept + 1 < segment_count_ && nth(kept).is_decelerating) ++kept;

@@ -380,5 +380,22 @@ TEST(Executor, StopDropsPreparedSegmentsOnGrblhal) {
   EXPECT_NEAR(way[0] - way[1], 6.5, 0.7) << "six or seven segments of 1 mm";
 }
 
+TEST(Executor, StopDropsSegmentsBetweenTwoOfThemToo) {
+  // One step takes a good part of a segment here, and the last step of each is still due when the next one is taken.
+  MotionSettings settings = plain_settings();
+  settings.acceleration_mm_per_s2.fill(100.0F);
+  double longest_ms = 0;
+  for (int ms = 40; ms < 60; ++ms) {
+    Machine machine(Firmware::GrblHal, settings);
+    machine.move(line_to({400}, feed(1500)));
+    machine.run(at_s(ms / 1000.0));
+    const Instant asked = machine.now;
+    machine.executor.begin_stop(machine.now);
+    machine.run();
+    longest_ms = std::max(longest_ms, base::to_seconds(machine.now - asked) * 1000.0);
+  }
+  EXPECT_LT(longest_ms, 130) << "without the prepared segments";
+}
+
 }  // namespace
 }  // namespace kerf::motion

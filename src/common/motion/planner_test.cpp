@@ -130,5 +130,17 @@ TEST(Planner, BacklashTakeUpMovesNoPosition) {
   EXPECT_EQ(planner.position_steps()[0], 0);
 }
 
+TEST(Rules, DwellsOfGrblHalEndOnATick) {
+  using namespace std::chrono_literals;
+  const MotionRules& rules = rules_of(vocabulary::Firmware::GrblHal);
+  // 49 ticks of 0.9999375 ms and what is left of the first one.
+  const Instant begun{1ms};
+  const Instant end = dwell_end(rules, begun, dwell_duration(rules, 0.02F));
+  EXPECT_GT(end - begun, 49ms);
+  EXPECT_LT(end - begun, 50ms);
+  EXPECT_EQ(dwell_end(rules, begun, Duration{}), begun);
+  EXPECT_EQ(dwell_end(rules_of(vocabulary::Firmware::Grbl), begun, 50ms), begun + 50ms);
+}
+
 }  // namespace
 }  // namespace kerf::motion

@@ -79,6 +79,12 @@ struct MotionRules {
   Duration dwell_step = std::chrono::milliseconds{50};
   /// True: a dwell is cut down to whole steps (Rabbit); else it is rounded up.
   bool dwell_rounds_down = false;
+  /// Timer counts of the tick that dwells are counted in: each step of a dwell is so many of them as it has ms, and
+  /// ends on one. 0: dwells last as long as they say. The simulator's tick is one count short of 1 ms (Simulator
+  /// driver.c).
+  std::uint32_t dwell_tick_counts = 0;
+  /// How long before time zero the tick last came.
+  Duration dwell_tick_phase{};
   /// Bits of the dwell counter: 16 on Grbl, where G4P3276.8 is no dwell at all.
   std::uint32_t dwell_mask = 0xFFFF'FFFF;
 
@@ -90,6 +96,9 @@ struct MotionRules {
 
 /// How long G4 P`dwell_s` lasts, once the motion before it has ended (gnea/grbl nuts_bolts.c; motion.md 1.5).
 [[nodiscard]] Duration dwell_duration(const MotionRules& rules, float dwell_s);
+
+/// When a dwell of that duration ends which begins `now`.
+[[nodiscard]] Instant dwell_end(const MotionRules& rules, Instant now, Duration dwell);
 
 /// `$` settings that shape motion, in the units of the settings.
 struct MotionSettings {

@@ -129,6 +129,7 @@ constexpr Personality kUsual = {
     .tells_parameters = true,
     .checks_whole_arcs = true,
     .has_work_offset_sync_bit = true,
+    .probe_begins_at_target = true,
     .loop = {.pass = std::chrono::microseconds{10}, .for_line = 1, .for_block = 2, .to_start = 1},
     .parse_command = parse_command_grblhal,
     .check_setting = check_setting_grblhal,
