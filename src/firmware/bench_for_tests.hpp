@@ -24,6 +24,12 @@ class Bench {
     heard_at_start = hear();
   }
 
+  /// The same on other hardware; `personality` outlives the bench.
+  explicit Bench(const Personality& personality) : controller(personality, factory()) {
+    controller.power_on(now);
+    heard_at_start = hear();
+  }
+
   /// A memory that was written before, with factory settings.
   static StoredState factory() {
     StoredState stored;

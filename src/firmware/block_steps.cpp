@@ -27,13 +27,13 @@ bool has_words(const Board& board, std::string_view block) {
   return !(text.front() == '/' && (text.size() == 1 || board.switches.block_delete));
 }
 
-/// Manual tool changes raise Z first, and touch-off modes want more axes homed (grblHAL tool_change.c).
+/// Manual tool changes raise the tool first, and touch-off modes want more axes homed (grblHAL tool_change.c).
 bool tool_change_needs_homing(const Board& board) {
-  constexpr AxisMask kZ = 0b100;
   constexpr AxisMask kXyz = 0b111;
   const auto mode = static_cast<int>(board.settings.number(setting::kToolChangeMode));
   if (mode < 1 || mode > 3) return false;
-  const AxisMask wanted = mode == 1 ? kZ : kXyz;
+  const auto linear = gcode::axes_of(board.interpreter.state().modal.plane).linear;
+  const AxisMask wanted = mode == 1 ? static_cast<AxisMask>(1U << linear) : kXyz;
   return (board.homed & wanted) != wanted;
 }
 
@@ -60,7 +60,11 @@ class BlockSteps {
     if (duration == Duration::zero() && board_.personality.skips_empty_dwell) return;
     steps_.insert(steps_.end(), {Synchronize{}, Dwell{.left = duration}});
   }
-  void operator()(const gcode::SpindleChange& change) { synchronised(change); }
+  void operator()(const gcode::SpindleChange& change) {
+    synchronised(change);
+    const bool stops = change.direction == gcode::SpindleDirection::Off;
+    wait_for_spindle(stops ? setting::kSpindleOffDelay : setting::kSpindleOnDelay);
+  }
   void operator()(const gcode::SpindleSpeedChange& change) { synchronised(change); }
   void operator()(const gcode::CoolantChange& change) {
     if (change.waits) steps_.emplace_back(Synchronize{});
@@ -79,8 +83,10 @@ class BlockSteps {
     steps_.emplace_back(Perform{.action = write});
   }
   void operator()(const gcode::ToolTableWrite& write) { steps_.emplace_back(Perform{.action = write}); }
+  void operator()(const gcode::PortOutput& output) { steps_.emplace_back(Perform{.action = output}); }
+  void operator()(const gcode::PortWait& wait) { steps_.emplace_back(WaitForInput{.wait = wait}); }
   void operator()(const gcode::ToolSelect& select) { steps_.emplace_back(Perform{.action = select}); }
-  void operator()(const gcode::ToolChange&) { steps_.insert(steps_.end(), {Synchronize{}, EnterToolChange{}}); }
+  void operator()(const gcode::ToolChange&) { steps_.insert(steps_.end(), {Synchronize{}, BeginToolChange{}}); }
   void operator()(const gcode::ProgramPause&) { steps_.insert(steps_.end(), {Synchronize{}, HoldForCycleStart{}}); }
   void operator()(const gcode::ProgramDemarcation& mark) { steps_.emplace_back(Perform{.action = mark}); }
   void operator()(const gcode::AlarmRequest& request) {
@@ -96,6 +102,10 @@ class BlockSteps {
   }
 
  private:
+  /// grblHAL spindle_control.c: time to spin up or down.
+  void wait_for_spindle(int delay_setting) {
+    if (board_.settings.number(delay_setting) > 0) steps_.emplace_back(board_.delay_step(delay_setting));
+  }
   void synchronised(const gcode::Action& action) {
     steps_.insert(steps_.end(), {Synchronize{}, Perform{.action = action}});
   }

@@ -71,9 +71,9 @@ std::string_view name_of(StoredOffset which) {
   return kOffsetNames.at(index_of(which));
 }
 
-Board::Board(const Personality& owner, StoredState memory, Equipment fitted)
+Board::Board(const Personality& owner, StoredState remembered, Equipment fitted)
     : personality(owner),
-      stored(std::move(memory)),
+      stored(std::move(remembered)),
       settings(owner, axes_of(owner, stored)),
       rejected_settings(settings.load(stored)),
       outbox(protocol::style_of(owner.dialect())),
@@ -82,6 +82,7 @@ Board::Board(const Personality& owner, StoredState memory, Equipment fitted)
       executor(planner, motion::rules_of(owner.firmware)),
       equipment(std::move(fitted)),
       slot{.card = equipment.card},
+      memory(owner.hardware.slow_memory ? owner.memory_byte_time : Duration::zero()),
       block_targets_mm(kMostBlocks) {
   if (equipment.pendant) outbox.fit_pendant();
   interpreter.watch(facts);
@@ -256,6 +257,16 @@ AxisValues Board::clipped_to_travel(const AxisValues& target_mm) const {
   return clipped;
 }
 
+float Board::within_travel(int axis, float mm) const {
+  if (((homed >> static_cast<unsigned>(axis)) & 1U) == 0 || settings.number(setting::kMaxTravel, axis) <= 0) return mm;
+  const Travel travel = travel_of(*this, axis);
+  return std::clamp(mm, travel.min, travel.max);
+}
+
+Dwell Board::delay_step(int delay_setting) const {
+  return {.left = motion::dwell_duration(planner.rules(), static_cast<float>(settings.number(delay_setting)))};
+}
+
 float Board::spindle_rpm() const {
   if (accessories.spindle == gcode::SpindleDirection::Off) return 0;
   float rpm = accessories.programmed_rpm;
@@ -326,7 +337,8 @@ void Board::owe_accessories() {
   if (!personality.status.counts_changes) report.override_counter = 0;
 }
 
-void Board::store_settings() {
+void Board::store_settings(int bytes) {
+  memory.write(now, bytes);
   settings.save(stored);
   stored.initialised = true;
   ++stored_revision;
@@ -335,6 +347,8 @@ void Board::store_settings() {
 void Board::store_offset(StoredOffset which) {
   const AxisValues& values = offset_of(interpreter.offsets(), which);
   const auto axes = static_cast<std::ptrdiff_t>(settings.axes());
+  // The bytes of three floats and a check sum, of which half change as a rule.
+  memory.write(now, 7);
   stored.offsets.insert_or_assign(std::string{name_of(which)},
                                   std::vector<double>(values.begin(), values.begin() + axes));
   ++stored_revision;

@@ -23,7 +23,10 @@
 #include "firmware/motion_log.hpp"
 #include "firmware/outbox.hpp"
 #include "firmware/personality.hpp"
+#include "firmware/ports.hpp"
 #include "firmware/settings_store.hpp"
+#include "firmware/slow_memory.hpp"
+#include "firmware/step.hpp"
 #include "firmware/stored_state.hpp"
 #include "firmware/workcell.hpp"
 #include "firmware/ymodem.hpp"
@@ -52,6 +55,7 @@ struct OverrideState {
   bool feed_acts = true;
   bool spindle_acts = true;
   bool feed_hold_acts = true;
+  bool parking_acts = true;
 };
 
 /// Switches that a program run looks at (grblHAL).
@@ -74,6 +78,7 @@ struct ReportDebts {
   bool tool = false;
   bool tool_reference = false;
   bool tool_offset = false;
+  bool input_result = false;
   bool cycle_start_pressed = false;
   int override_counter = 0;
   int work_offset_counter = 0;
@@ -89,7 +94,7 @@ struct MotionMessage {
 
 /// One controller's shared memory. The parts (Cycle, Foreground, Reporter, ...) change it; it decides nothing itself.
 struct Board {
-  explicit Board(const Personality& owner, StoredState memory, Equipment fitted = {});
+  explicit Board(const Personality& owner, StoredState remembered, Equipment fitted = {});
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
 
@@ -126,7 +131,18 @@ struct Board {
   bool in_demarcated_program = false;
   bool probing = false;
   bool auto_reporting = false;
+  /// An M6 waits for the operator, or moves the machine meanwhile.
+  bool changes_tool = false;
   bool tool_acknowledged = false;
+  /// grblHAL tells its status at each start of motion in a tool change.
+  bool owes_status = false;
+  /// Result of the last M66: what it read, -1 if it waited in vain.
+  std::optional<int> input_result;
+  Ports ports;
+  SlowMemory memory;
+  /// The control inputs and limits that acted last, for `$LEV`.
+  std::string last_control;
+  AxisMask last_limits = 0;
   bool position_lost = false;
   AxisValues home_position_mm{};
   AxisValues tool_reference_mm{};
@@ -198,6 +214,10 @@ struct Board {
   [[nodiscard]] float switch_position_mm(int axis) const;
   /// The nearest target within travel (grblHAL `$40`).
   [[nodiscard]] AxisValues clipped_to_travel(const AxisValues& target_mm) const;
+  /// `mm` on an axis, cut to its travel if it is homed.
+  [[nodiscard]] float within_travel(int axis, float mm) const;
+  /// A wait as long as a setting says.
+  [[nodiscard]] Dwell delay_step(int delay_setting) const;
   /// Spindle speed with override and limits; 0 when off.
   [[nodiscard]] float spindle_rpm() const;
 
@@ -216,13 +236,15 @@ struct Board {
   void owe_accessories();
 
   /// Writes settings and offsets into `stored`.
-  void store_settings();
+  void store_settings(int bytes = kWholeMemory);
   void store_offset(gcode::StoredOffset which);
   void store_tool(int tool);
   /// Offsets and tool table as stored.
   void load_offsets();
 
  private:
+  static constexpr int kWholeMemory = 80;
+
   void plan_line(const motion::PathLine& line);
 
   Workcell::Geometry geometry_;

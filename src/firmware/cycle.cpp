@@ -15,6 +15,7 @@ namespace {
 constexpr double kSpindleRestoreSeconds = 4.0;
 constexpr double kCoolantRestoreSeconds = 1.0;
 constexpr unsigned kRestoreAfterHoldBit = 1;
+constexpr unsigned kKeepCoolantBit = 1;
 
 bool is_spinning(const Accessories& accessories) {
   return accessories.spindle != gcode::SpindleDirection::Off;
@@ -33,7 +34,9 @@ Duration restore_delay(const Board& board, double seconds) {
 }  // namespace
 
 void Cycle::auto_start(int more_passes) {
-  if (board_.state != MachineState::Idle || board_.planner.is_empty()) return;
+  const bool changes_tool = board_.state == MachineState::Tool && board_.changes_tool;
+  if (!(board_.state == MachineState::Idle || changes_tool) || board_.planner.is_empty()) return;
+  board_.owes_status = board_.owes_status || changes_tool;
   run_or_idle(board_.until_pass(board_.personality.loop.to_start + more_passes));
 }
 
@@ -62,7 +65,7 @@ void Cycle::run_or_idle(Duration after) {
   board_.executor.cycle_start(board_.now, after);
   const ExecutorPhase phase = board_.executor.phase();
   moving_ = phase == ExecutorPhase::Running || phase == ExecutorPhase::Decelerating;
-  board_.state = moving_ ? MachineState::Run : MachineState::Idle;
+  board_.state = moving_ ? MachineState::Run : resting_state();
 }
 
 void Cycle::cycle_start() {
@@ -72,10 +75,14 @@ void Cycle::cycle_start() {
       if (board_.hold_complete) resume();
       break;
     case MachineState::Door:
-      if (board_.door != DoorPhase::Closed) break;
+      if (board_.door != DoorPhase::Closed || parking_.leg() != Parking::Leg::None) break;
       board_.door = DoorPhase::Resuming;
       restoring_ = Restoring::No;
-      restore_next();
+      if (parking_.go_back()) {
+        moving_ = true;
+      } else {
+        restore_next();
+      }
       break;
     default: break;
   }
@@ -91,8 +98,21 @@ void Cycle::resume() {
     wanted.spindle = to_restore_.spindle;
     wanted.programmed_rpm = to_restore_.programmed_rpm;
     board_.set_accessories(wanted);
+    if (board_.settings.number(setting::kSpindleOnDelay) > 0) {
+      restoring_ = Restoring::Hold;
+      restored_at_ = board_.now + board_.delay_step(setting::kSpindleOnDelay).left;
+      return;
+    }
   }
-  if (board_.personality.realtime.resume_says_nothing_said && restores) board_.say(protocol::Feedback{});
+  finish_resume(was_stopped);
+}
+
+void Cycle::finish_resume(bool was_stopped) {
+  const bool says = board_.personality.realtime.resume_says_nothing_said &&
+                    board_.settings.flag(setting::kHoldActions, kRestoreAfterHoldBit);
+  restoring_ = Restoring::No;
+  restored_at_ = kNever;
+  if (says) board_.say(protocol::Feedback{});
   to_restore_ = {};
   board_.hold_complete = false;
   // A stopped spindle is restored first, one pass earlier.
@@ -153,6 +173,8 @@ void Cycle::halt(Halt reason) {
     board_.hold_complete = false;
     to_restore_ = board_.accessories;
   }
+  // A cancelled jog and a probe that touched stop as fast as 0x19 does (grblHAL system.h: one bit for both kinds of
+  // cancel); elsewhere all of them are holds.
   const bool is_forgotten = reason == Halt::Stop || reason == Halt::JogCancel || reason == Halt::MotionCancel;
   if (is_forgotten) {
     board_.executor.begin_stop(board_.now);
@@ -173,7 +195,7 @@ void Cycle::come_to_rest() {
       board_.locked_until = board_.now + board_.executor.lock_delay();
       end_motion();
       break;
-    case Halt::MotionCancel: board_.state = MachineState::Idle; break;
+    case Halt::MotionCancel: board_.state = resting_state(); break;
     case Halt::Stop: finish_stop(); break;
     case Halt::Door: finish_retract(); break;
     case Halt::None: break;
@@ -182,8 +204,7 @@ void Cycle::come_to_rest() {
 
 void Cycle::end_motion() {
   moving_ = false;
-  board_.state = jogging_in_tool_change_ ? MachineState::Tool : MachineState::Idle;
-  jogging_in_tool_change_ = false;
+  board_.state = resting_state();
 }
 
 void Cycle::stop() {
@@ -199,7 +220,6 @@ void Cycle::stop() {
 }
 
 void Cycle::finish_stop() {
-  board_.interpreter.abort_tool_change();
   board_.interpreter.stop();
   board_.flush_motion();
   board_.set_accessories({});
@@ -207,8 +227,8 @@ void Cycle::finish_stop() {
   board_.apply_overrides();
   restoring_ = Restoring::No;
   restored_at_ = kNever;
+  parking_.forget();
   board_.hold_complete = false;
-  jogging_in_tool_change_ = false;
   using vocabulary::AlarmCode;
   const auto code = static_cast<AlarmCode>(board_.alarm);
   const bool stays =
@@ -242,6 +262,13 @@ void Cycle::open_door() {
   restored_at_ = kNever;
   board_.state = MachineState::Door;
   board_.door = DoorPhase::Retracting;
+  const Parking::Leg leg = parking_.leg();
+  const bool comes_back = leg == Parking::Leg::Return || leg == Parking::Leg::Plunge;
+  if (leg != Parking::Leg::None && !comes_back) return;
+  if (was_door) parking_.abort();
+  // Outputs were coming back: the firmware says it once more when it turns round.
+  if (was_door && !comes_back && parking_.is_away()) board_.say(FeedbackText::CheckDoor);
+  if (comes_back) return;
   if (moving_ && !was_door) {
     halt(Halt::Door);
   } else if (halt_ == Halt::None) {
@@ -252,7 +279,55 @@ void Cycle::open_door() {
 }
 
 void Cycle::finish_retract() {
-  board_.set_accessories({});
+  if (!parking_.begin()) {
+    switch_off();
+    board_.door = board_.workcell.is_active(Input::Door) ? DoorPhase::Ajar : DoorPhase::Closed;
+    return;
+  }
+  moving_ = parking_.pull_out();
+  if (!moving_) end_parking_leg();
+}
+
+void Cycle::end_parking_leg() {
+  const Parking::Leg ended = parking_.leg();
+  parking_.leg_ended();
+  moving_ = false;
+  switch (ended) {
+    case Parking::Leg::None:  // there was nothing to pull out of
+    case Parking::Leg::PullOut:
+      // The reports that follow do not say so (grblHAL state_machine.c).
+      board_.accessories = what_stays_on();
+      moving_ = parking_.retreat();
+      if (!moving_) rest_parked();
+      break;
+    case Parking::Leg::Retreat: rest_parked(); break;
+    case Parking::Leg::Return: restore_next(); break;
+    case Parking::Leg::Plunge: finish_door(); break;
+    case Parking::Leg::Aborted: finish_retract(); break;
+  }
+}
+
+Accessories Cycle::what_stays_on() const {
+  const bool keeps_coolant = board_.state == MachineState::Door && board_.personality.has_extended_settings &&
+                             board_.settings.flag(setting::kDoorOptions, kKeepCoolantBit);
+  Accessories off;
+  if (keeps_coolant) {
+    off.flood = board_.accessories.flood;
+    off.mist = board_.accessories.mist;
+  }
+  return off;
+}
+
+void Cycle::switch_off() {
+  board_.set_accessories(what_stays_on());
+  if (board_.personality.has_extended_settings) board_.owe_accessories();
+}
+
+void Cycle::rest_parked() {
+  if (board_.state == MachineState::Sleep) {
+    board_.say(FeedbackText::Sleeping);
+    return;
+  }
   board_.door = board_.workcell.is_active(Input::Door) ? DoorPhase::Ajar : DoorPhase::Closed;
 }
 
@@ -261,6 +336,10 @@ void Cycle::close_door() {
 }
 
 void Cycle::restore_next() {
+  if (restoring_ == Restoring::Hold) {
+    finish_resume(true);
+    return;
+  }
   Accessories wanted = board_.accessories;
   if (restoring_ == Restoring::No && is_spinning(to_restore_)) {
     restoring_ = Restoring::Spindle;
@@ -286,7 +365,13 @@ void Cycle::restore_next() {
   }
   restoring_ = Restoring::No;
   restored_at_ = kNever;
+  moving_ = parking_.plunge();
+  if (!moving_) finish_door();
+}
+
+void Cycle::finish_door() {
   to_restore_ = {};
+  parking_.forget();
   board_.door = DoorPhase::Closed;
   const int passes = board_.personality.loop.resume_to_start;
   run_or_idle_after(passes == 0 ? 0 : passes + 1);
@@ -294,14 +379,18 @@ void Cycle::restore_next() {
 
 void Cycle::sleep() {
   board_.flush_motion();
-  board_.set_accessories({});
   board_.state = MachineState::Sleep;
-  board_.say(FeedbackText::Sleeping);
+  if (!parking_.begin()) {
+    switch_off();
+    board_.say(FeedbackText::Sleeping);
+    return;
+  }
+  moving_ = parking_.pull_out();
+  if (!moving_) end_parking_leg();
 }
 
 void Cycle::start_jog() {
   if (board_.planner.is_empty() || board_.state == MachineState::Jog) return;
-  jogging_in_tool_change_ = board_.state == MachineState::Tool;
   board_.state = MachineState::Jog;
   moving_ = true;
   guard_limits();
@@ -315,7 +404,7 @@ bool Cycle::kill() {
   restoring_ = Restoring::No;
   restored_at_ = kNever;
   to_restore_ = {};
-  jogging_in_tool_change_ = false;
+  parking_.forget();
   moving_ = false;
   motion_ended_ = false;
   contacts_.clear();
@@ -352,6 +441,7 @@ void Cycle::handle(const motion::ExecutorEvent& event) {
   std::visit(base::Overloaded{
                  [&](const motion::BlockStarted& started) {
                    if (board_.motion_log) board_.motion_log->began(started.at);
+                   board_.ports.block_began(started.source_line);
                    auto& messages = board_.motion_messages;
                    while (!messages.empty() && messages.front().block <= started.source_line) {
                      board_.say(protocol::Feedback{.text = messages.front().text});
@@ -362,6 +452,10 @@ void Cycle::handle(const motion::ExecutorEvent& event) {
                    if (board_.motion_log) board_.motion_log->ended(finished.at, finished.steps);
                  },
                  [&](const motion::MotionEnded&) {
+                   if (parking_.leg() != Parking::Leg::None) {
+                     end_parking_leg();
+                     return;
+                   }
                    motion_ended_ = true;
                    if (halt_ != Halt::None) {
                      come_to_rest();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "firmware/board.hpp"
+#include "firmware/parking.hpp"
 
 namespace kerf::firmware {
 
@@ -12,7 +13,7 @@ namespace kerf::firmware {
 /// firmwares do (protocol.md 2, 6.6, 6.8, 9.7).
 class Cycle {
  public:
-  explicit Cycle(Board& board) : board_(board) {}
+  explicit Cycle(Board& board) : board_(board), parking_(board) {}
 
   /// Runs queued motion if the machine is idle.
   void auto_start() { auto_start(0); }
@@ -61,7 +62,7 @@ class Cycle {
  private:
   /// Why the machine is decelerating.
   enum class Halt : std::uint8_t { None, Hold, JogCancel, MotionCancel, Stop, Door, SoftLimit };
-  enum class Restoring : std::uint8_t { No, Spindle, Coolant };
+  enum class Restoring : std::uint8_t { No, Spindle, Coolant, Hold };
 
   void auto_start(int more_passes);
   void run_or_idle_after(int passes);
@@ -70,18 +71,28 @@ class Cycle {
   void halt(Halt reason);
   void come_to_rest();
   void end_motion();
+  [[nodiscard]] MachineState resting_state() const {
+    return board_.changes_tool ? MachineState::Tool : MachineState::Idle;
+  }
   void resume();
   void run_or_idle(Duration after = Duration::zero());
   void finish_stop();
   void finish_retract();
+  void end_parking_leg();
+  void switch_off();
+  /// Coolant, if the door may leave it on.
+  [[nodiscard]] Accessories what_stays_on() const;
+  void rest_parked();
   void restore_next();
+  void finish_door();
+  void finish_resume(bool was_stopped);
 
   Board& board_;
+  Parking parking_;
   Halt halt_ = Halt::None;
   Restoring restoring_ = Restoring::No;
   Instant restored_at_ = kNever;
   Accessories to_restore_;
-  bool jogging_in_tool_change_ = false;
   bool motion_ended_ = false;
   bool moving_ = false;
   std::vector<motion::ThresholdCrossed> contacts_;

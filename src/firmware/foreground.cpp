@@ -45,11 +45,32 @@ void Foreground::run() {
     next_auto_report_ = interval > Duration::zero() ? board_.now + interval : kNever;
     if (board_.auto_reporting) status_wanted_ = true;
   }
+  watch_for_sleep();
   say_wanted_status();
 }
 
 Duration Foreground::auto_report_interval() const {
   return std::chrono::milliseconds{static_cast<std::int64_t>(board_.settings.number(setting::kAutoReport))};
+}
+
+// grblHAL sleep.c: with `$62` five minutes of rest with spindle or coolant on, unless somebody asks something.
+void Foreground::watch_for_sleep() {
+  constexpr std::chrono::minutes kUntilSleep{5};
+  const Accessories& on = board_.accessories;
+  const bool powered = on.spindle != gcode::SpindleDirection::Off || on.flood || on.mist;
+  const bool rests = board_.state == MachineState::Idle ||
+                     (board_.state == MachineState::Hold && board_.hold_complete) ||
+                     (board_.state == MachineState::Door && board_.door == DoorPhase::Ajar);
+  const bool may_sleep =
+      board_.personality.sleep_needs_setting && board_.settings.flag(setting::kSleepEnable) && !board_.auto_reporting;
+  if (!may_sleep || !powered || !rests) {
+    asleep_at_ = kNever;
+  } else if (asleep_at_ == kNever) {
+    asleep_at_ = board_.now + kUntilSleep;
+  } else if (board_.now >= asleep_at_) {
+    asleep_at_ = kNever;
+    cycle_.sleep();
+  }
 }
 
 void Foreground::settle() {
@@ -236,6 +257,7 @@ void Foreground::abandon_line() {
   is_frozen_ = false;
   in_line_ = false;
   homing_.abandon();
+  tool_change_.abandon();
   board_.probing = false;
   receiver_.forget_aside();
   receiver_.cancel();
@@ -249,29 +271,20 @@ void Foreground::open_door() {
   }
 }
 
+void Foreground::open_door_by_switch() {
+  if (board_.personality.has_extended_settings) {
+    const bool at_rest = board_.state == MachineState::Idle || board_.state == MachineState::Jog;
+    const bool ignored = at_rest && board_.settings.flag(setting::kDoorOptions);
+    if (ignored || board_.changes_tool) return;
+  }
+  open_door();
+}
+
 void Foreground::emergency_stop() {
   // Only grblHAL has the input (alarms.h).
   if (!board_.personality.start.has_homing_alarm) return;
   board_.position_lost = board_.position_lost || !cycle_.is_finished();
   enter_critical_alarm(AlarmCode::EmergencyStop);
-}
-
-void Foreground::acknowledge_tool_change() {
-  if (board_.state != MachineState::Tool || board_.tool_acknowledged) return;
-  board_.tool_acknowledged = true;
-  if (!board_.job.is_running()) receiver_.set_aside();
-}
-
-void Foreground::end_tool_change() {
-  if (board_.state != MachineState::Tool) return;
-  board_.interpreter.complete_tool_change();
-  board_.tool_acknowledged = false;
-  receiver_.restore();
-  board_.job.resume();
-  board_.state = MachineState::Idle;
-  cycle_.auto_start();
-  board_.report.tool = true;
-  reporter_.say_status(receiver_.free());
 }
 
 void Foreground::request_status(bool everything) {
@@ -289,8 +302,9 @@ bool Foreground::answers_status() const {
 }
 
 void Foreground::say_wanted_status() {
+  status_wanted_ = status_wanted_ || board_.owes_status;
   if (!status_wanted_ || !answers_status()) return;
-  status_wanted_ = false;
+  status_wanted_ = board_.owes_status = false;
   reporter_.say_status(receiver_.free());
 }
 
@@ -304,6 +318,7 @@ void Foreground::look_at_switches() {
   if (fresh == 0 || ignores) return;
   board_.position_lost = true;
   board_.homed = 0;
+  board_.last_limits = fresh;
   enter_critical_alarm(AlarmCode::HardLimit);
 }
 
@@ -321,6 +336,7 @@ Instant Foreground::next_deadline() const {
   Instant deadline = std::min(homing_.next_deadline(), next_auto_report_);
   if (until_) deadline = std::min(deadline, *until_);
   if (board_.locked_until > board_.now) deadline = std::min(deadline, board_.locked_until);
+  deadline = std::min(deadline, asleep_at_);
   return deadline;
 }
 

@@ -12,6 +12,7 @@
 #include "firmware/reporter.hpp"
 #include "firmware/step.hpp"
 #include "firmware/system_commands.hpp"
+#include "firmware/tool_change.hpp"
 
 namespace kerf::firmware {
 
@@ -24,7 +25,8 @@ class Foreground {
         receiver_(receiver),
         reporter_(reporter),
         homing_(board, cycle),
-        commands_(board, reporter),
+        tool_change_(board),
+        commands_(board, reporter, tool_change_),
         reader_(board.interpreter.rules().line) {}
 
   void power_on();
@@ -37,14 +39,18 @@ class Foreground {
   /// 0x19: the line in execution is dropped unanswered.
   void abandon_line();
   /// `~` while the machine waits for a tool.
-  void end_tool_change();
+  void go_on_with_tool_change();
   /// 0xA3: lines are read again while the machine waits for a tool; what was unread waits.
   void acknowledge_tool_change();
   /// The safety door opens, or 0x84 says so.
   void open_door();
+  /// The door switch: unlike 0x84 it may be ignored while nothing is cut.
+  void open_door_by_switch();
   void emergency_stop();
   /// A status report is wanted as soon as the main loop looks.
   void request_status(bool everything);
+  /// Something arrived: the machine does not fall asleep.
+  void note_activity() { asleep_at_ = kNever; }
   /// Switches may have changed, by hand or by motion.
   void look_at_switches();
 
@@ -68,6 +74,7 @@ class Foreground {
   bool operator()(HoldForCycleStart& step);
   bool operator()(Probe& step);
   bool operator()(HomeAxes& step);
+  bool operator()(WaitForInput& step);
   bool operator()(RaiseAlarm& step);
   bool operator()(StopAtSoftLimit& step);
   bool operator()(EnterCritical& step);
@@ -79,7 +86,10 @@ class Foreground {
   bool operator()(BeginFileJob& step);
   bool operator()(EndFileJob& step);
   bool operator()(EnterSleep& step);
+  bool operator()(BeginToolChange& step);
   bool operator()(EnterToolChange& step);
+  bool operator()(ContinueToolChange& step);
+  bool operator()(FinishToolChange& step);
   bool operator()(FinishHoming& step);
 
  private:
@@ -114,6 +124,8 @@ class Foreground {
   void check_at_start_grbl();
   [[nodiscard]] bool answers_status() const;
   void say_wanted_status();
+  void watch_for_sleep();
+  void end_tool_change();
   void owe_first_report();
   [[nodiscard]] Duration auto_report_interval() const;
   void note_work_offset();
@@ -124,6 +136,7 @@ class Foreground {
   Receiver& receiver_;
   Reporter& reporter_;
   Homing homing_;
+  ToolChange tool_change_;
   SystemCommands commands_;
   gcode::LineReader reader_;
 
@@ -142,6 +155,7 @@ class Foreground {
   std::uint8_t last_work_offset_ = 0;
   AxisValues last_tool_length_{};
   Instant next_auto_report_ = kNever;
+  Instant asleep_at_ = kNever;
 };
 
 }  // namespace kerf::firmware

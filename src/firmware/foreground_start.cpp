@@ -16,6 +16,7 @@ constexpr unsigned kClearHomed = 0;
 constexpr unsigned kClearRapidOverride = 2;
 constexpr unsigned kClearFeedOverride = 3;
 constexpr unsigned kHardLimitsStrict = 1;
+constexpr unsigned kParkingOffAtStart = 1;
 
 Say saying(const Board& board, FeedbackText text) {
   return {.message =
@@ -45,12 +46,15 @@ bool Foreground::operator()(Restart& /*step*/) {
     board_.overrides.rapid = before.rapid;
   }
   if (board_.position_lost && board_.settings.flag(setting::kResetActions, kClearHomed)) board_.homed = 0;
+  board_.overrides.parking_acts = !board_.settings.flag(setting::kParking, kParkingOffAtStart);
   board_.position_lost = false;
   board_.switches = {};
   board_.probing = false;
   board_.critical = false;
   board_.in_demarcated_program = false;
   board_.tool_acknowledged = false;
+  board_.input_result.reset();
+  board_.ports.forget_waiting();
   board_.hold_complete = false;
   cycle_.kill();
   receiver_.forget_aside();
@@ -60,7 +64,7 @@ bool Foreground::operator()(Restart& /*step*/) {
   in_line_ = false;
   last_limits_ = board_.limits();
 
-  board_.interpreter.abort_tool_change();
+  tool_change_.abandon();
   board_.interpreter.settings().check_mode = false;
   board_.interpreter.reset();
   board_.interpreter.offsets().probe = {};

@@ -1,6 +1,7 @@
 // What each step of the foreground does.
 
 #include <algorithm>
+#include <utility>
 #include <variant>
 
 #include "common/base/overloaded.hpp"
@@ -14,6 +15,15 @@ using vocabulary::AlarmCode;
 using vocabulary::FeedbackText;
 
 bool Foreground::operator()(Answer& step) {
+  if (board_.memory.is_busy(board_.now)) {
+    is_frozen_ = true;
+    until_ = board_.memory.busy_until();
+    return wait_for(WaitingFor::Time);
+  }
+  if (is_frozen_) {
+    is_frozen_ = false;
+    until_.reset();
+  }
   last_error_ = step.code;
   in_line_ = false;
   if (board_.job.is_read()) {
@@ -179,13 +189,27 @@ bool Foreground::operator()(Perform& step) {
                    wanted.mist = change.mist;
                  },
                  [&](const gcode::WorkOffsetChange&) { note_work_offset(); },
-                 [&](const gcode::StoredOffsetWrite& write) { board_.store_offset(write.which); },
+                 [&](const gcode::StoredOffsetWrite& write) {
+                   board_.store_offset(write.which);
+                   const auto selected = board_.interpreter.state().modal.work_offset;
+                   if (write.which == static_cast<gcode::StoredOffset>(selected))
+                     tool_change_.note_work_offset_stored();
+                 },
                  [&](const gcode::ToolTableWrite& write) { board_.store_tool(write.tool); },
+                 [&](const gcode::PortOutput& output) {
+                   if (checks_only) return;
+                   if (output.with_motion) {
+                     board_.ports.set_with_block(board_.blocks_planned + 1, output);
+                   } else {
+                     board_.ports.set(output);
+                   }
+                 },
                  [&](const gcode::ToolSelect&) { board_.report.tool = true; },
                  [&](const gcode::OverrideControl& control) {
                    board_.overrides.feed_acts = control.feed_enabled;
                    board_.overrides.spindle_acts = control.spindle_enabled;
                    board_.overrides.feed_hold_acts = control.feed_hold_enabled;
+                   board_.overrides.parking_acts = control.parking_enabled;
                    board_.apply_overrides();
                  },
                  [&](const gcode::ProgramDemarcation&) { board_.in_demarcated_program ^= true; },
@@ -279,7 +303,7 @@ bool Foreground::operator()(Probe& step) {
       contact_ = contacts.empty() ? board_.steps() : contacts.front().steps;
       step.phase = Probe::Phase::Cancelling;
       cycle_.cancel_motion();
-    } else if (cycle_.is_finished() && board_.state == MachineState::Idle) {
+    } else if (cycle_.is_finished() && (board_.state == MachineState::Idle || board_.state == MachineState::Tool)) {
       return finish_probe(board_.steps(), false, step.move);
     }
   }
@@ -307,6 +331,35 @@ bool Foreground::finish_probe(const AxisSteps& contact, bool touched, const gcod
   }
   if (tells) next.emplace_back(SayProbe{});
   insert_front(std::move(next));
+  return true;
+}
+
+bool Foreground::operator()(WaitForInput& step) {
+  if (board_.state == MachineState::Check) return true;
+  if (cycle_.is_suspended()) return wait_for(WaitingFor::CycleStart);
+  const float value = board_.workcell.port_input(step.wait.digital, step.wait.port);
+  const bool first = !step.until;
+  if (first) {
+    step.before = value;
+    step.until = board_.now + base::from_seconds(static_cast<double>(step.wait.timeout_s));
+  }
+  const bool is_on = value != 0.0F;
+  const bool was_on = std::exchange(step.before, value) != 0.0F;
+  bool met = false;
+  switch (step.wait.mode) {
+    case gcode::WaitMode::Immediate: met = true; break;
+    case gcode::WaitMode::Rise: met = is_on && !was_on; break;
+    case gcode::WaitMode::Fall: met = was_on && !is_on; break;
+    case gcode::WaitMode::High: met = is_on; break;
+    case gcode::WaitMode::Low: met = !is_on; break;
+  }
+  if (!met && board_.now < *step.until) {
+    until_ = step.until;
+    return wait_for(WaitingFor::Time);
+  }
+  until_.reset();
+  board_.input_result = met ? static_cast<int>(value) : -1;
+  board_.report.input_result = true;
   return true;
 }
 
@@ -338,7 +391,8 @@ bool Foreground::operator()(FinishHoming& step) {
   const HomingRules& rules = board_.personality.homing;
   const AxisMask wanted = board_.homing_axes();
   const bool all_homed = (wanted & board_.homed) == wanted;
-  if (rules.tracks_axes && (step.asked == 0 || step.asked == vocabulary::mask_of(vocabulary::Axis::Z)) &&
+  const bool measures = board_.settings.number(setting::kToolChangeMode) != 0;
+  if (rules.tracks_axes && measures && (step.asked == 0 || step.asked == vocabulary::mask_of(vocabulary::Axis::Z)) &&
       board_.tool_reference_axes != 0) {
     board_.tool_reference_axes = 0;
     board_.report.tool_reference = true;
@@ -383,20 +437,6 @@ bool Foreground::operator()(EnterCritical& /*step*/) {
 
 bool Foreground::operator()(EnterSleep& /*step*/) {
   cycle_.sleep();
-  return true;
-}
-
-bool Foreground::operator()(EnterToolChange& /*step*/) {
-  if (board_.state == MachineState::Check) {
-    board_.interpreter.complete_tool_change();
-    return true;
-  }
-  board_.state = MachineState::Tool;
-  board_.tool_acknowledged = false;
-  if (board_.job.is_running()) {
-    board_.job.suspend();
-    receiver_.clear();
-  }
   return true;
 }
 

@@ -272,6 +272,11 @@ void Listing::build_information(bool extended) {
                                  .letters = letters_of(board_.all_axes(), board_.settings.axes())});
   board_.say(protocol::NewOptions{.flags = new_options()});
   board_.say(protocol::FirmwareName{.name = std::string{dialect.firmware_field}});
+  if (const auto& ports = board_.personality.hardware.ports; ports != gcode::PortCounts{}) {
+    const std::string inputs = std::to_string(ports.digital_inputs) + "," + std::to_string(ports.digital_outputs);
+    const std::string outputs = std::to_string(ports.analog_inputs) + "," + std::to_string(ports.analog_outputs);
+    board_.say(protocol::BuildRow{.key = "AUX IO", .value = inputs + "," + outputs});
+  }
   for (const auto& [key, value] : board_.personality.build_rows) {
     board_.say(protocol::BuildRow{.key = std::string{key}, .value = std::string{value}});
   }
@@ -290,7 +295,9 @@ void Listing::home_switches() {
 }
 
 void Listing::last_events() {
-  board_.say(protocol::BuildRow{.key = "LASTEVENTS", .value = ",,,,"});
+  board_.say(protocol::BuildRow{
+      .key = "LASTEVENTS",
+      .value = board_.last_control + "," + letters_of(board_.last_limits, board_.settings.axes()) + ",,,"});
 }
 
 void Listing::spindles(bool for_machines) {

@@ -28,6 +28,8 @@ Personality built_with(const Personality& personality, const Hardware& hardware)
   Personality built = personality;
   if (hardware.axes != 0) built.hardware.axes = std::min(hardware.axes, personality.dialect().axes_max);
   if (hardware.tools != 0) built.hardware.tools = hardware.tools;
+  if (hardware.ports != gcode::PortCounts{}) built.hardware.ports = hardware.ports;
+  built.hardware.slow_memory = hardware.slow_memory;
   return built;
 }
 

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "common/base/time.hpp"
+#include "common/gcode/interpreter.hpp"
 #include "common/vocabulary/dialect.hpp"
 #include "common/vocabulary/errors.hpp"
 #include "common/vocabulary/firmware.hpp"
@@ -229,6 +230,9 @@ struct LoopTimes {
 struct Hardware {
   int axes = 0;   ///< 0: those of the dialect
   int tools = 0;  ///< entries of grblHAL's tool table
+  gcode::PortCounts ports{};
+  /// Writing to memory takes as long as on the real board.
+  bool slow_memory = false;
 };
 
 /// One firmware's ways. The function pointers are named policies; everything else is a value.
@@ -284,6 +288,8 @@ struct Personality {
   /// motion all the same (motion.md 1.5).
   bool has_laser_spindle = false;
   LoopTimes loop{};
+  /// What one byte of memory takes on a board whose writes stall everything; zero elsewhere.
+  Duration memory_byte_time{};
 
   CommandParser parse_command{};
   SettingCheck check_setting{};

@@ -82,7 +82,7 @@ bool Realtime::act_on_motion(Byte byte) {
     case Byte::CycleStart:
     case Byte::CycleStartAlternate:
       if (board_.state == MachineState::Tool) {
-        foreground_.end_tool_change();
+        foreground_.go_on_with_tool_change();
       } else {
         cycle_.cycle_start();
       }

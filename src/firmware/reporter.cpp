@@ -125,7 +125,7 @@ StatusReport Reporter::status(std::size_t rx_free) {
   const bool masked = is_grblhal_like(board_);
   StatusReport report;
   // grblHAL report.c: motion that a pending tool change still waits for is shown as Tool.
-  const bool tool_waits = board_.state == MachineState::Run && board_.interpreter.state().tool_change_pending;
+  const bool tool_waits = board_.state == MachineState::Run && board_.changes_tool;
   report.state = tool_waits ? MachineState::Tool : board_.state;
   report.substate = substate_of(board_);
   add_position(report);
@@ -287,7 +287,7 @@ void Reporter::add_changed(StatusReport& report) const {
   const ReportDebts& debts = board_.report;
   const gcode::ParserState& state = board_.interpreter.state();
   const bool all = debts.everything;
-  const bool tool_changes = state.tool_change_pending;
+  const bool tool_changes = board_.changes_tool;
   if (all || debts.work_coordinate_system) report.wcs = kWorkOffsets.at(state.modal.work_offset);
   if (all || debts.accessories || debts.tool || tool_changes) {
     report.accessories = accessory_letters(tool_changes && !(all || debts.tool));
@@ -310,6 +310,7 @@ void Reporter::add_changed(StatusReport& report) const {
     if (single) report.homed->axis_mask = board_.homed;
   }
   if (all || debts.tool) report.tool = static_cast<int>(state.tool);
+  if ((all || debts.input_result) && board_.input_result) report.input_result = board_.input_result;
   if (all) report.probe = protocol::ProbeState{};
   if (all || debts.tool_reference) report.tlr = board_.tool_reference_axes != 0;
   if (!all) return;

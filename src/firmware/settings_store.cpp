@@ -210,6 +210,7 @@ void SettingsStore::configure(gcode::InterpreterSettings& settings) const {
   settings.rotary_axes = rotary_axes();
   settings.parking_override_control = flag(setting::kParking) && flag(setting::kParking, kParkingOverrideBit);
   settings.tools = personality_.hardware.tools;
+  settings.ports = personality_.hardware.ports;
   settings.g73_retract_mm = static_cast<float>(number(setting::kG73Retract));
 }
 

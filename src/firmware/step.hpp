@@ -105,15 +105,41 @@ struct BeginFileJob {
 struct EndFileJob {};
 struct EnterSleep {};
 struct EnterToolChange {};
+/// Where a tool change has come to, when the way on depends on what happened.
+enum class ToolChangePhase : std::uint8_t {
+  AtPlace,
+  LeftG30,
+  SetterFound,
+  SetterMeasured,
+  AboveWork,
+  Back,
+  PlateFound,
+  PlateMeasured,
+  PlateDone,
+};
+/// M66: reads a user input, or waits for it.
+struct WaitForInput {
+  gcode::PortWait wait{};
+  std::optional<Instant> until{};
+  float before = 0;
+};
+/// M6, the motion before it has ended.
+struct BeginToolChange {};
+struct ContinueToolChange {
+  ToolChangePhase phase = ToolChangePhase::AtPlace;
+};
+/// The new tool is in; the lines that were put aside go on.
+struct FinishToolChange {};
 /// State Idle and, where the firmware does so, `[MSG:]` and startup lines.
 struct FinishHoming {
   vocabulary::AxisMask asked = 0;  ///< 0: all
 };
 
-using Step = std::variant<Answer, Say, SayStatus, SayProbe, PlanMove, PlanArc, PlanJog, Synchronize, Dwell, Freeze,
-                          Perform, HoldForCycleStart, Probe, HomeAxes, RaiseAlarm, StopAtSoftLimit, EnterCritical,
-                          Restart, CheckAtStart, RunStartupLines, KeepStartupLine, RunStartupBlock, BeginFileJob,
-                          EndFileJob, EnterSleep, EnterToolChange, FinishHoming>;
+using Step =
+    std::variant<Answer, Say, SayStatus, SayProbe, PlanMove, PlanArc, PlanJog, Synchronize, Dwell, Freeze, Perform,
+                 HoldForCycleStart, Probe, HomeAxes, WaitForInput, RaiseAlarm, StopAtSoftLimit, EnterCritical, Restart,
+                 CheckAtStart, RunStartupLines, KeepStartupLine, RunStartupBlock, BeginFileJob, EndFileJob, EnterSleep,
+                 BeginToolChange, EnterToolChange, ContinueToolChange, FinishToolChange, FinishHoming>;
 
 /// What the foreground is waiting for, to be looked at.
 enum class WaitingFor : std::uint8_t {

@@ -10,6 +10,7 @@ StoredState sample() {
   state.initialised = true;
   state.settings = {{"110", "600.000"}, {"Homing/Enable", "1"}};
   state.offsets = {{"G54", {1.0, -2.5, 3.0}}, {"G92", {0.0, 0.0, 0.125}}};
+  state.tools = {{3, {.length_mm = {0.0, 0.0, 12.5}, .radius_mm = 0.5}}};
   state.startup_lines = {"G54G21", ""};
   state.user_text = "mill = left";
   return state;

@@ -33,8 +33,9 @@ bool homing_is_required(const Board& board) {
 std::expected<void, ErrorCode> SystemCommands::execute(std::string_view line, Steps& steps) {
   Steps added;
   if (const Result result = understand(line, added); !result) return result;
-  const bool answers =
-      std::ranges::any_of(added, [](const Step& step) { return std::holds_alternative<Answer>(step); });
+  const bool answers = std::ranges::any_of(added, [](const Step& step) {
+    return std::holds_alternative<Answer>(step) || std::holds_alternative<ContinueToolChange>(step);
+  });
   if (!answers) added.emplace_back(Answer{});
   steps.insert(steps.end(), added.begin(), added.end());
   return {};
@@ -72,7 +73,7 @@ SystemCommands::Result SystemCommands::dispatch(const ParsedCommand& command, St
     case Command::SingleBlock:
     case Command::OptionalStop: return toggle(command.command);
     case Command::SetToolReference: return set_tool_reference();
-    case Command::ProbeToolPlate: return std::unexpected(ErrorCode::InvalidStatement);
+    case Command::ProbeToolPlate: return probe_tool_plate(steps);
     case Command::Parameters:
       if (command.has_value && board_.personality.tells_parameters) return tell_parameter(command.value);
       if (command.has_value) return std::unexpected(ErrorCode::InvalidStatement);
@@ -178,7 +179,8 @@ SystemCommands::Result SystemCommands::write_setting(const ParsedCommand& comman
   if (const Result may = may_write(command); !may) return may;
   if (const Result written = board_.settings.write(command.key, command.value); !written) return written;
   board_.apply_settings();
-  board_.store_settings();
+  // The value and a check sum.
+  board_.store_settings(board_.settings.find(command.key)->match.row->type == vocabulary::SettingType::Decimal ? 5 : 2);
   if (command.key == std::to_string(setting::kReportInches)) board_.owe_work_offset();
   if (board_.personality.names_settings) restart_spindle_after(command, added);
   if (!board_.personality.has_extended_settings) return {};
@@ -416,9 +418,21 @@ SystemCommands::Result SystemCommands::list_codes(const ParsedCommand& command) 
 
 SystemCommands::Result SystemCommands::set_tool_reference() {
   const gcode::Offsets& offsets = board_.interpreter.offsets();
-  board_.tool_reference_axes = offsets.probe_succeeded ? vocabulary::mask_of(vocabulary::Axis::Z) : AxisMask{0};
-  if (offsets.probe_succeeded) board_.tool_reference_mm = offsets.probe;
+  const auto linear = gcode::axes_of(board_.interpreter.state().modal.plane).linear;
+  if (offsets.probe_succeeded) {
+    board_.tool_reference_axes = static_cast<AxisMask>(board_.tool_reference_axes | (1U << linear));
+    board_.tool_reference_mm.at(linear) = offsets.probe.at(linear);
+  } else {
+    board_.tool_reference_axes = 0;
+  }
   board_.report.tool_reference = true;
+  return {};
+}
+
+SystemCommands::Result SystemCommands::probe_tool_plate(Steps& steps) {
+  auto planned = tool_change_.probe_plate();
+  if (!planned) return std::unexpected(planned.error());
+  steps = *std::move(planned);
   return {};
 }
 

@@ -9,14 +9,15 @@
 #include "firmware/listing.hpp"
 #include "firmware/reporter.hpp"
 #include "firmware/step.hpp"
+#include "firmware/tool_change.hpp"
 
 namespace kerf::firmware {
 
 /// Executes `$` lines. The steps that it appends end in the line's answer, and a reset may follow that.
 class SystemCommands {
  public:
-  SystemCommands(Board& board, Reporter& reporter)
-      : board_(board), reporter_(reporter), listing_(board), card_commands_(board) {}
+  SystemCommands(Board& board, Reporter& reporter, ToolChange& tool_change)
+      : board_(board), reporter_(reporter), tool_change_(tool_change), listing_(board), card_commands_(board) {}
 
   /// `line` without its `$`, but with it where lines may begin with `[` as well. An error leaves `steps` alone.
   std::expected<void, ErrorCode> execute(std::string_view line, Steps& steps);
@@ -48,11 +49,13 @@ class SystemCommands {
   Result toggle(Command command);
   Result list_codes(const ParsedCommand& command);
   Result set_tool_reference();
+  Result probe_tool_plate(Steps& steps);
   /// What forbids `$X`, or homing (grblHAL system.c check_status).
   [[nodiscard]] std::optional<ErrorCode> lock_reason(bool homing) const;
 
   Board& board_;
   Reporter& reporter_;
+  ToolChange& tool_change_;
   Listing listing_;
   CardCommands card_commands_;
 };

@@ -16,6 +16,22 @@
 namespace kerf::firmware {
 
 /// The parts, wired together in the order in which they need each other.
+namespace {
+
+/// As grblHAL writes control inputs; 0 for inputs that are no buttons.
+char letter_of(Input input) {
+  switch (input) {
+    case Input::FeedHold: return 'H';
+    case Input::CycleStart: return 'S';
+    case Input::Reset: return 'R';
+    case Input::Door: return 'D';
+    case Input::EmergencyStop: return 'E';
+    default: return 0;
+  }
+}
+
+}  // namespace
+
 struct VirtualController::Parts {
   Parts(const Personality& personality, StoredState stored, Equipment equipment)
       : board(personality, std::move(stored), std::move(equipment)),
@@ -117,6 +133,7 @@ struct VirtualController::Parts {
   }
 
   void press(Input input) {
+    if (const char letter = letter_of(input); letter != 0) board.last_control = letter;
     switch (input) {
       case Input::FeedHold: cycle.feed_hold(); break;
       case Input::CycleStart:
@@ -124,7 +141,7 @@ struct VirtualController::Parts {
         realtime.act(static_cast<std::uint8_t>('~'));
         break;
       case Input::Reset: realtime.reset(); break;
-      case Input::Door: foreground.open_door(); break;
+      case Input::Door: foreground.open_door_by_switch(); break;
       case Input::EmergencyStop: foreground.emergency_stop(); break;
       default: break;
     }
@@ -160,7 +177,9 @@ void VirtualController::power_on(Instant now) {
 
 void VirtualController::on_bytes(Instant now, std::string_view bytes) {
   if (now > parts_->board.now) advance_to(now);
+  parts_->foreground.note_activity();
   for (const char byte : bytes) {
+    if (!parts_->board.memory.hears(parts_->board.now)) continue;
     if (!parts_->board.pendant_commands) parts_->take(static_cast<std::uint8_t>(byte));
   }
   if (parts_->is_stalled()) return;

@@ -36,8 +36,15 @@ void Workcell::apply(const WorkcellEvent& event) {
             surface_mm_ = moved.z_mm;
             surface_shape_ = moved.shape;
           },
+          [&](const PortInputChanged& change) {
+            (change.digital ? digital_ : analog_).at(change.port % kMostPorts) = change.value;
+          },
       },
       event);
+}
+
+float Workcell::port_input(bool digital, std::size_t port) const {
+  return (digital ? digital_ : analog_).at(port % kMostPorts);
 }
 
 std::optional<std::int32_t> Workcell::homing_switch_step(std::size_t axis, const Geometry& geometry) const {

@@ -60,7 +60,14 @@ struct ProbeSurfaceMoved {
   SurfaceShape shape{};
 };
 
-using WorkcellEvent = std::variant<InputChanged, LimitHeld, HomingSwitchMoved, ProbeSurfaceMoved>;
+/// A user input (grblHAL M66) reads something else: 0 or 1, or an analog value.
+struct PortInputChanged {
+  bool digital = true;
+  std::uint8_t port = 0;
+  float value = 0;
+};
+
+using WorkcellEvent = std::variant<InputChanged, LimitHeld, HomingSwitchMoved, ProbeSurfaceMoved, PortInputChanged>;
 
 /// What a controller's inputs read. Positions are physical: motor steps since power-on, which no homing or reset
 /// redefines.
@@ -78,6 +85,8 @@ class Workcell {
   void apply(const WorkcellEvent& event);
 
   [[nodiscard]] bool is_active(Input input) const { return inputs_[static_cast<std::size_t>(input)]; }
+  /// What a user input reads; 0 for one that nobody has set.
+  [[nodiscard]] float port_input(bool digital, std::size_t port) const;
   /// Axes whose limit input is active with the motors at `physical` steps.
   [[nodiscard]] vocabulary::AxisMask limits_at(const vocabulary::AxisSteps& physical, const Geometry& geometry) const;
   [[nodiscard]] bool probe_at(const vocabulary::AxisSteps& physical, const Geometry& geometry) const;
@@ -96,7 +105,11 @@ class Workcell {
     std::optional<double> distance_mm;
   };
 
+  static constexpr std::size_t kMostPorts = 16;
+
   std::array<bool, kInputs> inputs_{};
+  std::array<float, kMostPorts> digital_{};
+  std::array<float, kMostPorts> analog_{};
   vocabulary::AxisMask held_limits_ = 0;
   std::array<HomingSwitch, vocabulary::kMaxAxes> homing_switches_{};
   std::optional<double> surface_mm_;

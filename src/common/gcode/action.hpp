@@ -177,6 +177,26 @@ struct OverrideControl {
   bool operator==(const OverrideControl&) const = default;
 };
 
+/// M62 to M65, M67, M68 on grblHAL: a user output. `with_motion`: it changes when the next motion begins.
+struct PortOutput {
+  bool digital = true;
+  bool with_motion = false;
+  std::uint8_t port = 0;
+  float value = 0.0F;
+  bool operator==(const PortOutput&) const = default;
+};
+
+enum class WaitMode : std::uint8_t { Immediate, Rise, Fall, High, Low };
+
+/// M66 on grblHAL: reads a user input, or waits for it for a while.
+struct PortWait {
+  bool digital = true;
+  std::uint8_t port = 0;
+  WaitMode mode = WaitMode::Immediate;
+  float timeout_s = 0.0F;
+  bool operator==(const PortWait&) const = default;
+};
+
 /// `%` alone on a line (grblHAL): a program begins or ends.
 struct ProgramDemarcation {
   bool operator==(const ProgramDemarcation&) const = default;
@@ -190,6 +210,7 @@ struct AlarmRequest {
 
 using Action = std::variant<LinearMove, ArcMove, ProbeMove, Dwell, SpindleChange, SpindleSpeedChange, CoolantChange,
                             WorkOffsetChange, StoredOffsetWrite, ToolTableWrite, ToolSelect, ToolChange, ProgramPause,
-                            ProgramEnd, OperatorMessage, OverrideControl, ProgramDemarcation, AlarmRequest>;
+                            ProgramEnd, OperatorMessage, OverrideControl, PortOutput, PortWait, ProgramDemarcation,
+                            AlarmRequest>;
 
 }  // namespace kerf::gcode

@@ -22,6 +22,7 @@ ErrorCode act_tool_change(Block& block, BlockContext& context);
 ErrorCode act_spindle(Block& block, BlockContext& context);
 ErrorCode act_saved_state(Block& block, BlockContext& context);
 ErrorCode act_coolant(Block& block, BlockContext& context);
+ErrorCode act_ports(Block& block, BlockContext& context);
 ErrorCode act_pins(Block& block, BlockContext& context);
 ErrorCode act_overrides(Block& block, BlockContext& context);
 ErrorCode act_dwell(Block& block, BlockContext& context);

@@ -67,6 +67,21 @@ enum class CoolantWord : std::uint8_t { None, Mist, Flood, Off };
 /// Rabbit's M62 to M68.
 enum class PinWord : std::uint8_t { None, Digital, Analog };
 
+/// grblHAL's M62 to M68.
+enum class PortWord : std::uint8_t {
+  None,
+  OnWithMotion,
+  OffWithMotion,
+  On,
+  Off,
+  Wait,
+  AnalogWithMotion,
+  Analog,
+};
+
+/// False if the machine has no port that this word is about.
+[[nodiscard]] bool has_port_for(PortWord word, const PortCounts& ports);
+
 /// Letters with a value, one bit a letter; `$` follows Z.
 class WordSet {
  public:
@@ -125,6 +140,8 @@ struct Block {
   SavedState saved_state = SavedState::None;
   CoolantWord coolant_word = CoolantWord::None;
   PinWord pin_word = PinWord::None;
+  PortWord port_word = PortWord::None;
+  bool port_is_analog = false;
   ProgramFlow flow = ProgramFlow::Running;
   bool tool_change = false;
   bool tool_set = false;

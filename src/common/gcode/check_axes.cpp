@@ -58,6 +58,11 @@ ErrorCode check_tool_entry(Block& block, BlockContext& context, std::uint8_t ind
     entry.radius_mm = block.modal.inches ? inches_to_mm(context.rules.floats, block.r) : block.r;
     block.words.take('R');
   }
+  // Orientation and angles of a lathe tool: taken, without use on a mill.
+  if (block.words.has('Q') && (!is_whole(block.q) || block.q < 0.0F || block.q > 9.0F)) {
+    return ErrorCode::ValueOutOfRange;
+  }
+  block.words.take_all("IJQ");
   constexpr std::size_t kToolSetter = 8;
   for (std::size_t axis = 0; axis < context.axes(); ++axis) {
     float& length = entry.length_mm[axis];

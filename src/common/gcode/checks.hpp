@@ -24,6 +24,7 @@ ErrorCode check_surface_speed_mode(Block& block, BlockContext& context);
 void set_surface_speed(Block& block, BlockContext& context);
 ErrorCode forget_unchanged_modes(Block& block, BlockContext& context);
 ErrorCode check_dwell(Block& block, BlockContext& context);
+ErrorCode check_ports(Block& block, BlockContext& context);
 ErrorCode check_pins(Block& block, BlockContext& context);
 ErrorCode check_unused_words(Block& block, BlockContext& context);
 ErrorCode check_jog_words(Block& block, BlockContext& context);

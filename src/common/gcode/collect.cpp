@@ -246,6 +246,10 @@ class Collector {
       case Meaning::SavedState: block_.saved_state = static_cast<SavedState>(row.argument); break;
       case Meaning::Diameter: modal.diameter = row.argument != 0; break;
       case Meaning::SurfaceSpeed: modal.surface_speed = row.argument != 0; break;
+      case Meaning::Port:
+        if (!has_port_for(static_cast<PortWord>(row.argument), context_.settings.ports)) return std::nullopt;
+        block_.port_word = static_cast<PortWord>(row.argument);
+        break;
       case Meaning::Pin: block_.pin_word = static_cast<PinWord>(row.argument); break;
     }
     return row.group;

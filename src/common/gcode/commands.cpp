@@ -88,6 +88,10 @@ constexpr CommandRow pin(std::uint16_t number, PinWord what) {
   return word(number, Group::M10, Meaning::Pin, code(what));
 }
 
+constexpr CommandRow port(std::uint16_t number, PortWord what) {
+  return word(number, Group::M10, Meaning::Port, code(what));
+}
+
 constexpr CommandRow saved_state(std::uint16_t number, SavedState what) {
   return word(number, Group::None, Meaning::SavedState, code(what));
 }
@@ -205,7 +209,7 @@ constexpr CommandRow kRabbitM[] = {
     pin(68, PinWord::Analog),
 };
 
-// grblHAL core gcode.c, without cutter compensation, I/O ports and user M-codes.
+// grblHAL core gcode.c, without cutter compensation and user M-codes.
 constexpr CommandRow kGrblHalG[] = {
     motion(0, MotionMode::Rapid),
     motion(1, MotionMode::Linear),
@@ -300,6 +304,13 @@ constexpr CommandRow kGrblHalM[] = {
     word(56, Group::M9, Meaning::ParkingOverride),
     flow(60, ProgramFlow::CompletedM60),
     word(61, Group::M6, Meaning::ToolSet),
+    port(62, PortWord::OnWithMotion),
+    port(63, PortWord::OffWithMotion),
+    port(64, PortWord::On),
+    port(65, PortWord::Off),
+    port(66, PortWord::Wait),
+    port(67, PortWord::AnalogWithMotion),
+    port(68, PortWord::Analog),
     saved_state(70, SavedState::Save),
     saved_state(71, SavedState::Invalidate),
     saved_state(72, SavedState::Restore),

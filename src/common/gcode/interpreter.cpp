@@ -150,6 +150,11 @@ void Interpreter::abort_tool_change() {
   state_.tool_change_pending = false;
 }
 
+void Interpreter::set_tool_length(std::size_t axis, float mm) {
+  state_.modal.tool_length = ToolLengthMode::Dynamic;
+  offsets_.tool_length.at(axis) = mm;
+}
+
 AxisValues Interpreter::work_coordinate_offset() const {
   AxisValues sum{};
   for (std::size_t axis = 0; axis < sum.size(); ++axis)

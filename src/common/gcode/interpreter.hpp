@@ -49,6 +49,8 @@ class Interpreter {
   /// The waiting M6 is done (cycle start) or given up (reset, failed line).
   void complete_tool_change();
   void abort_tool_change();
+  /// A tool was measured: G43.1 with this length on one axis.
+  void set_tool_length(std::size_t axis, float mm);
 
   /// A coolant toggle by realtime byte shows in the modal state too.
   void set_coolant(const Coolant& coolant) { state_.modal.coolant = coolant; }

@@ -6,6 +6,15 @@
 
 namespace kerf::gcode {
 
+/// User inputs and outputs of the machine (grblHAL).
+struct PortCounts {
+  int digital_inputs = 0;
+  int digital_outputs = 0;
+  int analog_inputs = 0;
+  int analog_outputs = 0;
+  bool operator==(const PortCounts&) const = default;
+};
+
 /// What the interpreter must know of the machine's settings and state.
 struct InterpreterSettings {
   /// Axes of the machine, from X on.
@@ -36,6 +45,8 @@ struct InterpreterSettings {
   vocabulary::AxisMask rotary_axes = 0;
   /// grblHAL `$41` bit 2: M56 exists.
   bool parking_override_control = false;
+  /// Without any M62 to M68 do not exist.
+  PortCounts ports{};
   /// grblHAL `$28`.
   float g73_retract_mm = 0.1F;
   /// `$13`: grblHAL's parameters tell positions in other units then.

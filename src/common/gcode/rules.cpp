@@ -45,6 +45,7 @@ constexpr CheckStep kGrblHalChecks[] = {
     check_feed_grblhal,
     check_spindle_grblhal,
     check_tool_set,
+    check_ports,
     check_overrides,
     check_dwell,
     convert_units,
@@ -58,25 +59,10 @@ constexpr CheckStep kGrblHalChecks[] = {
     check_jog_words,
 };
 constexpr ActStep kGrblHalActs[] = {
-    act_macro,
-    act_laser,
-    act_feed,
-    act_spindle_speed,
-    act_tool_select,
-    act_tool_change,
-    act_spindle,
-    act_saved_state,
-    act_coolant,
-    act_overrides,
-    act_dwell,
-    act_modes,
-    act_tool_length_grblhal,
-    act_work_offset,
-    act_non_modal,
-    act_message,
-    act_motion,
-    act_modal_macro,
-    act_program_flow,
+    act_macro,     act_laser,       act_feed,    act_spindle_speed,       act_tool_select,
+    act_ports,     act_tool_change, act_spindle, act_saved_state,         act_coolant,
+    act_overrides, act_dwell,       act_modes,   act_tool_length_grblhal, act_work_offset,
+    act_non_modal, act_message,     act_motion,  act_modal_macro,         act_program_flow,
 };
 
 GcodeRules make_grbl() {

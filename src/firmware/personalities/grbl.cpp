@@ -49,6 +49,7 @@ const Personality kGrbl = {
              .homing_to_start = 1,
              .switch_to_stop = 1,
              .restore_delays_take_passes = true},
+    .memory_byte_time = std::chrono::microseconds{3400},  // ATmega328P, erase and write
     .parse_command = parse_command_grbl,
     .check_setting = check_setting_grbl,
     .commands = kCommands,
