@@ -23,7 +23,7 @@ class SlowMemory {
   /// A byte arrives: false if it is lost.
   [[nodiscard]] bool hears(Instant now) {
     if (!is_busy(now)) return true;
-    const auto left = (busy_until_ - now) / byte_time_;
+    const auto left = (busy_until_ - now - Duration{1}) / byte_time_;
     if (left != slot_) held_ = 0;
     slot_ = left;
     return ++held_ <= kHeldByUart;

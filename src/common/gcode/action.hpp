@@ -208,9 +208,9 @@ struct AlarmRequest {
   bool operator==(const AlarmRequest&) const = default;
 };
 
-using Action = std::variant<LinearMove, ArcMove, ProbeMove, Dwell, SpindleChange, SpindleSpeedChange, CoolantChange,
-                            WorkOffsetChange, StoredOffsetWrite, ToolTableWrite, ToolSelect, ToolChange, ProgramPause,
-                            ProgramEnd, OperatorMessage, OverrideControl, PortOutput, PortWait, ProgramDemarcation,
-                            AlarmRequest>;
+using Action =
+    std::variant<LinearMove, ArcMove, ProbeMove, Dwell, SpindleChange, SpindleSpeedChange, CoolantChange,
+                 WorkOffsetChange, StoredOffsetWrite, ToolTableWrite, ToolSelect, ToolChange, ProgramPause, ProgramEnd,
+                 OperatorMessage, OverrideControl, PortOutput, PortWait, ProgramDemarcation, AlarmRequest>;
 
 }  // namespace kerf::gcode

@@ -37,7 +37,7 @@ enum class Meaning : std::uint8_t {
   Pin,
   Diameter,      // G7 and G8: only in lathe mode
   SurfaceSpeed,  // G96 and G97: only in lathe mode
-  Port,  // grblHAL: only with such a port
+  Port,          // grblHAL: only with such a port
 };
 
 /// Does a command want the axis words for itself?
