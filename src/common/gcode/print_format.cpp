@@ -20,7 +20,9 @@ class Substitution {
     out_.clear();
     format_ = {};
     std::uint8_t at = 0;
-    while (const char c = text_.c_str()[at]) {
+    // A `#` that ends the text leaves the reader one letter behind the end.
+    while (at < text_.size()) {
+      const char c = text_[at];
       if (format_length_ > 0) {
         take_format(c);
         ++at;
