@@ -49,12 +49,17 @@ class Collector {
     const char* const text = text_;
     std::uint8_t at = 0;
     while (text[at] != '\0') {
+      // A full line without a word that ends it would be read for ever once the 8-bit counter has wrapped.
+      const std::uint8_t began_at = at;
       const char letter = text[at++];
       if (rules_.reads_expressions) {
         const auto done = read_flow(letter, at);
         if (!done) return done.error();
         if (block_.finished) return ErrorCode::Ok;
-        if (*done) continue;
+        if (*done) {
+          if (at <= began_at) return ErrorCode::LineTooLong;
+          continue;
+        }
       }
       const bool is_letter = (letter >= 'A' && letter <= 'Z') || (letter == '$' && takes('$'));
       if (!is_letter) return ErrorCode::ExpectedCommandLetter;
@@ -64,7 +69,6 @@ class Collector {
         return ErrorCode::Ok;
       }
       if (const ErrorCode error = add_word(letter); error != ErrorCode::Ok) return error;
-      // A full line of words without a group would be read for ever once the 8-bit counter has wrapped.
       if (at == 0) return ErrorCode::LineTooLong;
     }
     return ErrorCode::Ok;
