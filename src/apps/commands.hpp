@@ -30,6 +30,11 @@ struct VirtualOptions {
   std::string state_file;
   std::string card_folder;
   std::string pendant;
+  std::optional<int> axes;
+  std::optional<int> tools;
+  std::string ports;
+  bool slow_memory = false;
+  bool welcome_on_connect = false;
   std::vector<std::string> scripts;
   std::string control;
   std::string log_file;

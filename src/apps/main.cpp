@@ -64,6 +64,8 @@ void add_virtual_places(CLI::App& command, kerf::apps::VirtualOptions& options) 
                   "Serve at a pseudo-terminal with this name, for senders that only know serial ports")
       ->allow_extra_args(false)
       ->type_name("PATH");
+  command.add_flag("--welcome-on-connect", options.welcome_on_connect,
+                   "Greet a TCP client as a network board does (grblhal)");
   command
       .add_option("--count", options.count,
                   "Be so many controllers, at ports one after the other and at PATH-1, PATH-2 …")
@@ -86,6 +88,37 @@ void add_virtual_play(CLI::App& command, kerf::apps::VirtualOptions& options) {
       ->type_name("FILE");
 }
 
+void add_virtual_hardware(CLI::App& command, kerf::apps::VirtualOptions& options) {
+  constexpr const char* kHardware = "What the machine has";
+  command.add_option("--axes", options.axes, "So many axes: X Y Z A B C U V (rabbit to 6, grblhal to 8)")
+      ->type_name("N")
+      ->group(kHardware);
+  command.add_option("--tools", options.tools, "A tool table with so many entries, for G43 H and G10 L1 (grblhal)")
+      ->type_name("N")
+      ->group(kHardware);
+  command
+      .add_option("--ports", options.ports,
+                  "User inputs and outputs for M62 to M68: digital inputs, digital outputs, analog inputs, analog "
+                  "outputs (grblhal)")
+      ->type_name("N,N,N,N")
+      ->group(kHardware);
+  command
+      .add_flag("--slow-memory", options.slow_memory,
+                "Memory that takes milliseconds a byte, in which bytes on the wire are lost (grbl)")
+      ->group(kHardware);
+  command
+      .add_option("--card", options.card_folder,
+                  "An SD card: this folder; the machine takes $FM, $F and runs files (grblhal)")
+      ->type_name("FOLDER")
+      ->group(kHardware);
+  command
+      .add_option("--pendant", options.pendant,
+                  "A pendant (MPG) beside the sender, served at tcp://127.0.0.1:5002 or pty:///tmp/pendant; or "
+                  "'script': only scripts play it (grblhal)")
+      ->type_name("URL")
+      ->group(kHardware);
+}
+
 void add_virtual(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::VirtualOptions>();
   CLI::App* command = kerf.add_subcommand("virtual", "Be a controller: serve a virtual machine to any sender");
@@ -104,15 +137,7 @@ void add_virtual(CLI::App& kerf, Chosen& chosen) {
       ->add_option("--state", options->state_file,
                    "Keep settings and offsets in this file, as a real controller does in its memory")
       ->type_name("FILE");
-  command
-      ->add_option("--card", options->card_folder,
-                   "The machine has an SD card: this folder; it takes $FM, $F and runs files (grblhal)")
-      ->type_name("FOLDER");
-  command
-      ->add_option(
-          "--pendant", options->pendant,
-          "Serve a pendant (MPG) there, beside the sender: tcp://127.0.0.1:5002 or pty:///tmp/pendant (grblhal)")
-      ->type_name("URL");
+  add_virtual_hardware(*command, *options);
   add_virtual_play(*command, *options);
   command->footer(
       "\nExamples:\n"

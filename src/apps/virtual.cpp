@@ -3,7 +3,6 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -14,12 +13,12 @@
 
 #include "apps/commands.hpp"
 #include "apps/output.hpp"
+#include "apps/virtual_hardware.hpp"
 #include "apps/virtual_machine.hpp"
 #include "firmware/personality.hpp"
 #include "firmware/stored_state.hpp"
 #include "firmware/virtual_controller.hpp"
 #include "firmware/workcell_script.hpp"
-#include "io/card_folder.hpp"
 #include "io/control_port.hpp"
 #include "io/controller_host.hpp"
 #include "io/machine_url.hpp"
@@ -75,27 +74,6 @@ OrComplained<StoredState> stored_state_for(const VirtualOptions& options, const 
   return state;
 }
 
-/// What the options plug into the machine.
-OrComplained<firmware::Equipment> equipment_for(const VirtualOptions& options,
-                                                const firmware::Personality& personality) {
-  firmware::Equipment equipment;
-  equipment.pendant = !options.pendant.empty();
-  const bool wants_any = equipment.pendant || !options.card_folder.empty();
-  if (wants_any && !personality.has_plugins) {
-    return said(
-        fmt::format("{} has {}, or choose --personality grblhal.", personality.dialect().name,
-                    equipment.pendant ? "no second stream: leave --pendant out" : "no card slot: leave --card out"));
-  }
-  if (options.card_folder.empty()) return equipment;
-  std::error_code fault;
-  if (!std::filesystem::is_directory(options.card_folder, fault)) {
-    return said(
-        fmt::format("{} is no folder that could be a card: make it, or name another one.", options.card_folder));
-  }
-  equipment.card = std::make_shared<io::CardFolder>(options.card_folder);
-  return equipment;
-}
-
 std::string pace_text(const io::Speed& speed) {
   if (speed.is_max()) return "as fast as it can";
   return *speed.factor == 1.0 ? "in real time" : fmt::format("{} times as fast as a real one", *speed.factor);
@@ -133,7 +111,7 @@ OrComplained<std::vector<MachineSetup>> setups_of(const VirtualOptions& options,
   if (options.listen.empty() && options.ptys.empty()) {
     return said("Say where to serve: --listen tcp://127.0.0.1:5001, or --pty /tmp/kerf-grblhal, or both.");
   }
-  if (is_many && !options.pendant.empty()) {
+  if (is_many && !options.pendant.empty() && options.pendant != kPendantOfScripts) {
     return said("One pendant cannot serve several machines: leave --pendant out, or --count.");
   }
   for (const auto& [option, given] : {std::pair{"--listen", options.listen.size()}, {"--pty", options.ptys.size()}}) {
@@ -149,7 +127,8 @@ OrComplained<std::vector<MachineSetup>> setups_of(const VirtualOptions& options,
                        .speed = speed,
                        .address = std::nullopt,
                        .pty = {},
-                       .pendant = options.pendant,
+                       .pendant = options.pendant == kPendantOfScripts ? std::string{} : options.pendant,
+                       .greets = options.welcome_on_connect,
                        .state_file = numbered(options.state_file, index + 1, is_many)};
     if (!options.listen.empty()) {
       auto address = io::parse_listen_url(options.listen[std::min(index, options.listen.size() - 1)]);
@@ -176,8 +155,8 @@ OrComplained<firmware::VirtualController> controller_for(const VirtualOptions& o
                                                          const std::string& state_file) {
   auto state = stored_state_for(options, state_file);
   if (!state) return std::unexpected(state.error());
-  auto equipment = equipment_for(options, personality);
-  if (!equipment) return std::unexpected(equipment.error());
+  auto equipment = equipment_of(options, personality);
+  if (!equipment) return said(equipment.error());
   firmware::VirtualController controller(personality, *std::move(state), *std::move(equipment));
   const auto& rejected = controller.rejected_settings();
   if (rejected.empty()) return controller;
@@ -308,7 +287,9 @@ ExitStatus serve_virtual(const VirtualOptions& options) {
     }
     control = *std::move(address);
   }
-  return serve(options, **personality, *speed, control);
+  const auto build = build_of(options, **personality);
+  if (!build) return refuse(build.error());
+  return serve(options, *build, *speed, control);
 }
 
 }  // namespace kerf::apps

@@ -43,16 +43,19 @@ void EventLog::write(std::size_t machine, const RigRecord& record) {
 }
 
 WireServer::WireServer(io::EventLoop& loop, std::string_view who, Callbacks callbacks)
-    : tcp_(
-          loop,
-          {.received = callbacks.received,
-           .connected = [told = callbacks.told](std::string_view peer) { told(fmt::format("{} connected.", peer)); },
-           .disconnected = [told = callbacks.told](std::string_view peer) { told(fmt::format("{} went away.", peer)); },
-           .turned_away =
-               [told = callbacks.told, who](std::string_view peer) {
-                 told(fmt::format("{} was turned away: another {} is connected.", peer, who));
-               },
-           .room = callbacks.room}),
+    : tcp_(loop, {.received = callbacks.received,
+                  .connected =
+                      [callbacks](std::string_view peer) {
+                        callbacks.told(fmt::format("{} connected.", peer));
+                        if (callbacks.connected) callbacks.connected();
+                      },
+                  .disconnected =
+                      [told = callbacks.told](std::string_view peer) { told(fmt::format("{} went away.", peer)); },
+                  .turned_away =
+                      [told = callbacks.told, who](std::string_view peer) {
+                        told(fmt::format("{} was turned away: another {} is connected.", peer, who));
+                      },
+                  .room = callbacks.room}),
       pty_(loop, callbacks.received) {}
 
 std::expected<std::string, std::string> WireServer::listen(const io::TcpAddress& address) {
@@ -73,6 +76,11 @@ void WireServer::write(std::string_view bytes) {
   pty_.write(bytes);
 }
 
+void WireServer::greet(std::string_view greeting, std::string_view notice) {
+  tcp_.write(greeting);
+  pty_.write(notice);
+}
+
 std::string WireServer::set_cable(bool connected) {
   tcp_.set_cable(connected);
   const auto plugged = pty_.set_cable(connected);
@@ -87,10 +95,12 @@ VirtualMachine::VirtualMachine(io::EventLoop& loop, firmware::VirtualController 
       sender_(loop, "sender",
               {.received = [this](std::string_view bytes) { host_.receive(bytes); },
                .told = [this](std::string sentence) { note_link(std::move(sentence)); },
+               .connected = [this] { greet(); },
                .room = [this] { return host_.network_room(); }}),
       pendant_(loop, "pendant",
                {.received = [this](std::string_view bytes) { host_.receive_from_pendant(bytes); },
                 .told = [this](std::string sentence) { note_link(std::move(sentence)); },
+                .connected = {},
                 .room = {}}) {
   host_.on_output([this](std::string_view bytes) { sender_.write(bytes); });
   host_.on_pendant_output([this](std::string_view bytes) { pendant_.write(bytes); });
@@ -153,6 +163,13 @@ void VirtualMachine::note_link(std::string sentence) {
   sentence.pop_back();
   log_.write(setup_.number,
              {.at = host_.virtual_now(), .kind = RigRecordKind::Link, .from = {}, .what = std::move(sentence)});
+}
+
+// grblHAL stream.c stream_select: what a network stream that comes up says.
+void VirtualMachine::greet() {
+  if (!setup_.greets || !host_.rig().is_powered()) return;
+  const std::string_view welcome = host_.controller().personality().dialect().welcome;
+  sender_.greet(fmt::format("\r\n{}\r\n", welcome), "[MSG:TELNET STREAM ACTIVE]\r\n");
 }
 
 void VirtualMachine::set_cable(LinkState link) {

@@ -46,6 +46,8 @@ struct MachineSetup {
   std::string pty;
   /// An address to listen at, or a `pty:` with the name of a terminal; empty: none.
   std::string pendant;
+  /// A network client is greeted, where the firmware does so.
+  bool greets = false;
   std::string state_file;
 };
 
@@ -56,6 +58,8 @@ class WireServer {
     std::function<void(std::string_view bytes)> received;
     /// Somebody came or went, as a sentence.
     std::function<void(std::string sentence)> told;
+    /// A network client came.
+    std::function<void()> connected;
     std::function<std::size_t()> room;
   };
 
@@ -66,6 +70,8 @@ class WireServer {
   [[nodiscard]] std::expected<std::string, std::string> listen(const io::TcpAddress& address);
   [[nodiscard]] std::expected<std::string, std::string> open(const std::string& path);
   void write(std::string_view bytes);
+  /// `greeting` goes to the network client, `notice` to the terminal beside it.
+  void greet(std::string_view greeting, std::string_view notice);
   void go_on() { tcp_.go_on(); }
   /// What went wrong, or nothing.
   [[nodiscard]] std::string set_cable(bool connected);
@@ -90,6 +96,7 @@ class VirtualMachine {
   [[nodiscard]] std::expected<std::string, std::string> open_pendant();
   void say(std::string_view sentence) const;
   void note_link(std::string sentence);
+  void greet();
   void set_cable(firmware::LinkState link);
   void save(const firmware::StoredState& state) const;
 

@@ -28,6 +28,30 @@ TEST(Hardware, CountsAreLimitedToWhatTheFirmwareDrives) {
   EXPECT_EQ(built_with(personality_of(Firmware::GrblHal), {}).hardware.tools, 0);
 }
 
+TEST(Hardware, WhatAFirmwareCannotHaveIsNamed) {
+  const Personality& grbl = personality_of(Firmware::Grbl);
+  const Personality& hal = personality_of(Firmware::GrblHal);
+  EXPECT_EQ(fault_in({}, grbl), std::nullopt);
+  EXPECT_EQ(fault_in({.axes = 4}, grbl), HardwareFault::Axes);
+  EXPECT_EQ(fault_in({.axes = 2}, hal), HardwareFault::Axes);
+  EXPECT_EQ(fault_in({.tools = 1}, grbl), HardwareFault::Tools);
+  EXPECT_EQ(fault_in({.tools = 33}, hal), HardwareFault::Tools);
+  EXPECT_EQ(fault_in({.ports = {.analog_outputs = 1}}, grbl), HardwareFault::Ports);
+  EXPECT_EQ(fault_in({.slow_memory = true}, hal), HardwareFault::SlowMemory);
+  EXPECT_EQ(fault_in({.axes = 8, .tools = 32}, hal), std::nullopt);
+  EXPECT_EQ(personality_names_for({.axes = 5}), "rabbit, grblhal or grblhal-expr");
+  EXPECT_EQ(personality_names_for({.tools = 5}), "grblhal or grblhal-expr");
+  EXPECT_EQ(personality_names_for({.axes = 9}), "");
+}
+
+TEST(Hardware, PortCountsAreFourNumbers) {
+  EXPECT_EQ(parse_port_counts("4,3, 2,1"),
+            (gcode::PortCounts{.digital_inputs = 4, .digital_outputs = 3, .analog_inputs = 2, .analog_outputs = 1}));
+  for (const auto* const wrong : {"", "4", "4,4,4", "4,4,4,-1", "4,4,4,x", "1,2,3,4,5"}) {
+    EXPECT_EQ(parse_port_counts(wrong), std::nullopt) << wrong;
+  }
+}
+
 TEST(Hardware, PortsAreTold) {
   const Personality built = with_ports();
   EXPECT_THAT(Bench(built).say("$I+"), Contains("[AUX IO:2,2,1,1]"));

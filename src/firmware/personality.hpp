@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <expected>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@
 #include "common/vocabulary/errors.hpp"
 #include "common/vocabulary/firmware.hpp"
 #include "common/vocabulary/machine_state.hpp"
+#include "firmware/hardware.hpp"
 
 namespace kerf::firmware {
 
@@ -226,21 +228,14 @@ struct LoopTimes {
   bool restore_delays_take_passes = false;
 };
 
-/// What a build has beyond, or instead of, what its reference build has.
-struct Hardware {
-  int axes = 0;   ///< 0: those of the dialect
-  int tools = 0;  ///< entries of grblHAL's tool table
-  gcode::PortCounts ports{};
-  /// Writing to memory takes as long as on the real board.
-  bool slow_memory = false;
-};
-
 /// One firmware's ways. The function pointers are named policies; everything else is a value.
 struct Personality {
   /// What both ends of the wire know of this build.
   const vocabulary::Dialect* speaks = nullptr;
   vocabulary::Firmware firmware{};
   Hardware hardware{};
+  /// The most that a build of this firmware can have; axes are those of the dialect.
+  Hardware most{};
 
   StartRules start{};
   HomingRules homing{};
@@ -306,8 +301,11 @@ struct Personality {
 /// The personality of a firmware; Grbl 1.1h for an unknown one.
 [[nodiscard]] const Personality& personality_of(vocabulary::Firmware firmware);
 
-/// The same firmware on other hardware; zeros leave a count as it is.
+/// The same firmware on other hardware, as far as it can have it; zeros leave a count as it is.
 [[nodiscard]] Personality built_with(const Personality& personality, const Hardware& hardware);
+
+/// The first of `wanted` that no build of this firmware has.
+[[nodiscard]] std::optional<HardwareFault> fault_in(const Hardware& wanted, const Personality& personality);
 
 /// The personality whose key is `name`, in any case; null if there is none.
 [[nodiscard]] const Personality* personality_named(std::string_view name);
@@ -316,5 +314,7 @@ struct Personality {
 [[nodiscard]] std::span<const Personality* const> all_personalities();
 /// The keys of all builds as a sentence lists them: "grbl, rabbit, grblhal or grblhal-expr".
 [[nodiscard]] std::string personality_names();
+/// The same for those that can be built with `wanted`; empty if there are none.
+[[nodiscard]] std::string personality_names_for(const Hardware& wanted);
 
 }  // namespace kerf::firmware

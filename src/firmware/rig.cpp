@@ -19,6 +19,19 @@ std::string status_word(const VirtualController& controller) {
   return word;
 }
 
+/// The part that the deed is about, if this machine does not have it.
+std::string_view missing_part(const Deed& deed, const VirtualController& controller) {
+  const Hardware& hardware = controller.personality().hardware;
+  const auto* const event = std::get_if<WorkcellEvent>(&deed);
+  const auto* const port = event == nullptr ? nullptr : std::get_if<PortInputChanged>(event);
+  if (port != nullptr) {
+    if (port->digital) return port->port < hardware.ports.digital_inputs ? "" : "such user input";
+    return port->port < hardware.ports.analog_inputs ? "" : "such analog input";
+  }
+  const bool is_pendant = std::holds_alternative<PendantTakes>(deed) || std::holds_alternative<PendantSays>(deed);
+  return is_pendant && !controller.equipment().pendant ? "pendant" : "";
+}
+
 }  // namespace
 
 Rig::Rig(VirtualController controller) : controller_(std::move(controller)) {}
@@ -42,7 +55,7 @@ void Rig::on_bytes(Instant now, std::string_view bytes) {
 
 void Rig::on_pendant_bytes(Instant now, std::string_view bytes) {
   advance_to(now);
-  if (is_powered_) controller_.on_pendant_bytes(now_, bytes);
+  hear_pendant(bytes);
   move_bytes();
   play_due_lines();
 }
@@ -60,7 +73,19 @@ void Rig::submit(Instant now, const Deed& deed) {
   play_due_lines();
 }
 
+void Rig::note_missing_part(const Deed& deed) {
+  const std::string_view part = missing_part(deed, controller_);
+  if (part.empty()) return;
+  records_.push_back(
+      {.at = now_, .kind = RigRecordKind::InVain, .from = {}, .what = "there is no " + std::string(part)});
+}
+
+void Rig::hear_pendant(std::string_view bytes) {
+  if (is_powered_) controller_.on_pendant_bytes(now_, bytes);
+}
+
 void Rig::carry_out(const Deed& deed) {
+  note_missing_part(deed);
   std::visit(base::Overloaded{
                  [&](const WorkcellEvent& event) {
                    if (is_powered_) {
@@ -93,6 +118,10 @@ void Rig::carry_out(const Deed& deed) {
                    from_controller_.seed(~chance.seed);
                  },
                  [&](const InjectBytes& injection) { inject(injection); },
+                 [&](const PendantTakes& takes) {
+                   if (controller_.pendant_commands() != takes.command) hear_pendant("\x8b");
+                 },
+                 [&](const PendantSays& said) { hear_pendant(said.bytes); },
                  [](const WriteNote&) {},
              },
              deed);

@@ -28,8 +28,9 @@ enum class RigRecordKind : std::uint8_t {
   Fault,   ///< bytes were hit
   Link,    ///< somebody connected or went away
   State,   ///< the machine's state changed
+  InVain,  ///< a line asked for a part that this machine does not have
 };
-BOOST_DESCRIBE_ENUM(RigRecordKind, Script, Order, Fault, Link, State)
+BOOST_DESCRIBE_ENUM(RigRecordKind, Script, Order, Fault, Link, State, InVain)
 
 /// One entry of the log.
 struct RigRecord {
@@ -92,6 +93,8 @@ class Rig {
   };
 
   void carry_out(const Deed& deed);
+  void note_missing_part(const Deed& deed);
+  void hear_pendant(std::string_view bytes);
   void order(const OrderByteFault& order);
   void inject(const InjectBytes& injection);
   void set_link(LinkState state);

@@ -27,8 +27,9 @@ using vocabulary::MachineState;
 
 /// A rig that is switched on, and somebody who sends and orders.
 struct Site {
-  explicit Site(Firmware firmware = Firmware::GrblHal)
-      : rig(VirtualController(personality_of(firmware), testing::Bench::factory())) {
+  explicit Site(Firmware firmware = Firmware::GrblHal) : Site(personality_of(firmware), {}) {}
+  Site(const Personality& personality, Equipment equipment)
+      : rig(VirtualController(personality, testing::Bench::factory(), std::move(equipment))) {
     rig.power_on(now);
     hear();
   }
@@ -216,6 +217,67 @@ TEST(Rig, APlayerThatIsStoppedDoesNothingMore) {
   site.rig.stop(player);
   site.wait(2s);
   EXPECT_EQ(site.rig.controller().state(), MachineState::Idle);
+}
+
+TEST(Rig, AScriptPlaysThePendant) {
+  Site site(personality_of(Firmware::GrblHal), {.pendant = true});
+  site.order("pendant take");
+  site.wait(10ms);
+  EXPECT_TRUE(site.rig.controller().pendant_commands());
+  EXPECT_EQ(site.send("G21\n"), "");
+  site.order(R"(pendant say $J=G91X1F600\n)");
+  EXPECT_THAT(site.rig.take_pendant_outbox(), HasSubstr("ok\r\n"));
+  site.wait(1s);
+  EXPECT_EQ(site.rig.controller().position_steps()[0], 250);
+  site.order("pendant take");
+  EXPECT_TRUE(site.rig.controller().pendant_commands());
+  site.order("pendant return");
+  site.wait(10ms);
+  EXPECT_FALSE(site.rig.controller().pendant_commands());
+  EXPECT_EQ(site.send("G21\n"), "ok\r\n");
+}
+
+TEST(Rig, AScriptSetsUserInputs) {
+  const Personality built = built_with(personality_of(Firmware::GrblHal), {.ports = {.digital_inputs = 2}});
+  Site site(built, {});
+  site.play("after 500ms input 1 on\n");
+  EXPECT_EQ(site.send("M66P1L3Q2\n"), "");
+  EXPECT_EQ(site.wait(1s), "ok\r\n");
+  EXPECT_THAT(site.send("?"), HasSubstr("|In:1"));
+}
+
+TEST(Rig, WhatAMachineDoesNotHaveIsPlayedInVainAndLogged) {
+  Site site;
+  for (const auto* const order : {"pendant take", "input 0 on", "analog 1 2.5"}) site.order(order);
+  EXPECT_THAT(site.log(RigRecordKind::InVain),
+              ElementsAre("0.000 there is no pendant", "0.000 there is no such user input",
+                          "0.000 there is no such analog input"));
+}
+
+TEST(Rig, EveryDeedIsAnEntryInTheLog) {
+  for (const std::string_view usage : script_usage()) {
+    Site site;
+    // The first way to write it, with something in the place of what is meant.
+    std::string line{usage.substr(0, usage.find_first_of("|["))};
+    for (const auto& [placeholder, value] :
+         std::initializer_list<std::pair<std::string_view, std::string_view>>{{"door open", "door open"},
+                                                                              {"N on", "0 on"},
+                                                                              {"N VALUE", "0 1"},
+                                                                              {"surface Z", "surface -1"},
+                                                                              {"TIME", "1s"},
+                                                                              {"TEXT", "text"},
+                                                                              {"seed N", "seed 1"}}) {
+      if (const auto at = line.find(placeholder); at != std::string::npos) line.replace(at, placeholder.size(), value);
+    }
+    while (line.ends_with(' ')) line.pop_back();
+    if (line == "limit X") line += " on";
+    if (line == "switch X") line += " 10";
+    if (line.ends_with(" to")) {
+      line += line.starts_with("delay") ? " 1s" : line.starts_with("inject") ? " G21" : " next 1";
+    }
+    site.order(line);
+    EXPECT_THAT(site.log(RigRecordKind::Order), ElementsAre("0.000 " + line));
+  }
 }
 
 TEST(Rig, InjectedBytesReachBothEnds) {

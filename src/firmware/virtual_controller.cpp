@@ -267,6 +267,10 @@ std::optional<int> VirtualController::substate() const {
   return board.alarm != 0 ? std::optional{board.alarm} : std::nullopt;
 }
 
+bool VirtualController::pendant_commands() const {
+  return parts_->board.pendant_commands;
+}
+
 std::uint32_t VirtualController::lines_begun() const {
   return parts_->board.blocks_begun;
 }

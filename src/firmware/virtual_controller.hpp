@@ -65,6 +65,8 @@ class VirtualController {
   [[nodiscard]] vocabulary::MachineState state() const;
   /// The number behind the state's colon, as a status report with everything switched on would have it.
   [[nodiscard]] std::optional<int> substate() const;
+  /// The pendant has command, and the main wire is deaf.
+  [[nodiscard]] bool pendant_commands() const;
   /// G-code lines that were begun since power-on; `$` lines and empty ones do not count.
   [[nodiscard]] std::uint32_t lines_begun() const;
   /// The world around it. Somebody who replaces a controller takes it along, before power_on().

@@ -39,6 +39,8 @@ void Workcell::apply(const WorkcellEvent& event) {
           [&](const PortInputChanged& change) {
             (change.digital ? digital_ : analog_).at(change.port % kMostPorts) = change.value;
           },
+          [&](const SpindleLoaded& loaded) { spindle_share_ = loaded.share; },
+          [&](const EncoderPlugged& encoder) { encoder_plugged_ = encoder.plugged; },
       },
       event);
 }

@@ -67,7 +67,18 @@ struct PortInputChanged {
   float value = 0;
 };
 
-using WorkcellEvent = std::variant<InputChanged, LimitHeld, HomingSwitchMoved, ProbeSurfaceMoved, PortInputChanged>;
+/// The spindle turns at this share of the speed that it is told: 1 as it should, 0 it is stuck.
+struct SpindleLoaded {
+  double share = 1;
+};
+
+/// The encoder of the spindle counts, or its cable is off and it stands still.
+struct EncoderPlugged {
+  bool plugged = true;
+};
+
+using WorkcellEvent = std::variant<InputChanged, LimitHeld, HomingSwitchMoved, ProbeSurfaceMoved, PortInputChanged,
+                                   SpindleLoaded, EncoderPlugged>;
 
 /// What a controller's inputs read. Positions are physical: motor steps since power-on, which no homing or reset
 /// redefines.
@@ -85,6 +96,8 @@ class Workcell {
   void apply(const WorkcellEvent& event);
 
   [[nodiscard]] bool is_active(Input input) const { return inputs_[static_cast<std::size_t>(input)]; }
+  [[nodiscard]] double spindle_share() const { return spindle_share_; }
+  [[nodiscard]] bool is_encoder_plugged() const { return encoder_plugged_; }
   /// What a user input reads; 0 for one that nobody has set.
   [[nodiscard]] float port_input(bool digital, std::size_t port) const;
   /// Axes whose limit input is active with the motors at `physical` steps.
@@ -110,6 +123,8 @@ class Workcell {
   std::array<bool, kInputs> inputs_{};
   std::array<float, kMostPorts> digital_{};
   std::array<float, kMostPorts> analog_{};
+  double spindle_share_ = 1;
+  bool encoder_plugged_ = true;
   vocabulary::AxisMask held_limits_ = 0;
   std::array<HomingSwitch, vocabulary::kMaxAxes> homing_switches_{};
   std::optional<double> surface_mm_;

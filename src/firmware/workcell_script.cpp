@@ -7,6 +7,7 @@
 
 #include "common/base/duration_text.hpp"
 #include "common/base/text.hpp"
+#include "firmware/ports.hpp"
 
 namespace kerf::firmware {
 namespace {
@@ -113,6 +114,37 @@ ParsedDeed parse_surface(std::string_view /*name*/, Words words) {
   return WorkcellEvent{moved};
 }
 
+/// A user input; there are at most as many as a firmware can have.
+std::optional<std::uint8_t> port_named(std::string_view word) {
+  const auto port = base::parse_int<std::uint8_t>(word);
+  return port && *port < Ports::kMost ? port : std::nullopt;
+}
+
+ParsedDeed parse_port(std::string_view name, Words words) {
+  if (words.size() != 2) return std::nullopt;
+  const auto port = port_named(words[0]);
+  const bool digital = name == "input";
+  const auto active = is_on(words[1]);
+  const auto value =
+      digital ? (active ? std::optional{*active ? 1.0 : 0.0} : std::nullopt) : base::parse_decimal(words[1]);
+  if (!port || !value) return std::nullopt;
+  return WorkcellEvent{PortInputChanged{.digital = digital, .port = *port, .value = static_cast<float>(*value)}};
+}
+
+ParsedDeed parse_spindle(std::string_view /*name*/, Words words) {
+  if (words.size() == 1 && words[0] == "free") return WorkcellEvent{SpindleLoaded{.share = 1}};
+  if (words.size() == 1 && words[0] == "stuck") return WorkcellEvent{SpindleLoaded{.share = 0}};
+  if (words.size() != 2 || words[0] != "slow") return std::nullopt;
+  const auto share = base::parse_decimal(words[1]);
+  if (!share || *share < 0 || *share > 2) return std::nullopt;
+  return WorkcellEvent{SpindleLoaded{.share = *share}};
+}
+
+ParsedDeed parse_encoder(std::string_view /*name*/, Words words) {
+  if (words.size() != 1 || !is_any(words[0], {"plug", "unplug"})) return std::nullopt;
+  return WorkcellEvent{EncoderPlugged{.plugged = words[0] == "plug"}};
+}
+
 ParsedDeed parse_link(std::string_view /*name*/, Words words) {
   if (words.size() != 1) return std::nullopt;
   if (words[0] == "cut") return SetLink{LinkState::Cut};
@@ -198,6 +230,13 @@ ParsedDeed parse_inject(std::string_view /*name*/, Words words) {
   return InjectBytes{.directions = *directions, .bytes = *std::move(bytes)};
 }
 
+ParsedDeed parse_pendant(std::string_view /*name*/, Words words) {
+  if (words.size() == 1 && is_any(words[0], {"take", "return"})) return PendantTakes{.command = words[0] == "take"};
+  if (words.size() < 2 || words[0] != "say") return std::nullopt;
+  auto bytes = base::unescape(text_of(words.subspan(1)));
+  return bytes ? ParsedDeed{PendantSays{.bytes = *std::move(bytes)}} : std::nullopt;
+}
+
 ParsedDeed parse_note(std::string_view /*name*/, Words words) {
   return words.empty() ? std::nullopt : ParsedDeed{WriteNote{std::string(text_of(words))}};
 }
@@ -212,6 +251,11 @@ constexpr std::array kCommands{
     CommandRow{"switch", "switch X|Y|Z|A|B|C|U|V MM|none", parse_switch},
     CommandRow{"probe", "probe on|off|plug|unplug", parse_input},
     CommandRow{"surface", "surface Z|none [tilt X Y] [wave HEIGHT LENGTH]", parse_surface},
+    CommandRow{"input", "input N on|off", parse_port},
+    CommandRow{"analog", "analog N VALUE", parse_port},
+    CommandRow{"spindle", "spindle free|stuck | slow SHARE", parse_spindle},
+    CommandRow{"encoder", "encoder plug|unplug", parse_encoder},
+    CommandRow{"pendant", "pendant take|return | say TEXT with \\n, \\x8b …", parse_pendant},
     CommandRow{"link", "link cut|silent|restore", parse_link},
     CommandRow{"drop", "drop to|from|both next N | rate R | off", parse_byte_fault},
     CommandRow{"duplicate", "duplicate to|from|both next N | rate R | off", parse_byte_fault},

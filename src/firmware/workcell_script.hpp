@@ -55,6 +55,14 @@ struct Stall {
 struct PressButton {
   Input input{};
 };
+/// The pendant takes command over, or gives it back; nothing if it has it already, or has not.
+struct PendantTakes {
+  bool command = false;
+};
+/// Bytes from the pendant.
+struct PendantSays {
+  std::string bytes;
+};
 struct OrderByteFault {
   Directions directions;
   ByteFaultOrder order;
@@ -74,7 +82,7 @@ struct WriteNote {
 };
 
 using Deed = std::variant<WorkcellEvent, PressButton, SetLink, SetPower, Reboot, Stall, OrderByteFault, EndByteFaults,
-                          SeedChance, InjectBytes, WriteNote>;
+                          SeedChance, InjectBytes, PendantTakes, PendantSays, WriteNote>;
 
 /// So long after the controller was switched on first.
 struct AtTime {

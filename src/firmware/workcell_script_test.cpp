@@ -60,6 +60,20 @@ TEST(WorkcellScript, SwitchesAndButtons) {
   EXPECT_EQ(event<HomingSwitchMoved>("switch Z none").distance_mm, std::nullopt);
 }
 
+TEST(WorkcellScript, PortsSpindleAndPendant) {
+  const auto input = event<PortInputChanged>("input 3 on");
+  EXPECT_TRUE(input.digital);
+  EXPECT_EQ(input.port, 3);
+  EXPECT_EQ(input.value, 1.0F);
+  EXPECT_EQ(event<PortInputChanged>("analog 1 -2.5").value, -2.5F);
+  EXPECT_EQ(event<SpindleLoaded>("spindle slow 0.5").share, 0.5);
+  EXPECT_EQ(event<SpindleLoaded>("spindle stuck").share, 0);
+  EXPECT_EQ(event<SpindleLoaded>("spindle free").share, 1);
+  EXPECT_FALSE(event<EncoderPlugged>("encoder unplug").plugged);
+  EXPECT_TRUE(as<PendantTakes>("pendant take").command);
+  EXPECT_EQ(as<PendantSays>(R"(pendant say $J=G91X1F500\n)").bytes, "$J=G91X1F500\n");
+}
+
 TEST(WorkcellScript, Surfaces) {
   EXPECT_EQ(event<ProbeSurfaceMoved>("surface none").z_mm, std::nullopt);
   const auto moved = event<ProbeSurfaceMoved>("surface -12.5 tilt 0.01 -0.02 wave 0.3 40");
@@ -134,6 +148,11 @@ TEST(WorkcellScript, WhatIsWrongIsSaidWithWhatWouldBeRight) {
   wrong("when line x hold", "when line x", "when line N");
   wrong("when", "'when'", "when state NAME");
   wrong("inject to \\q", "inject", "\\x18");
+  wrong("input 16 on", "input 16 on", "input N on|off");
+  wrong("analog 0 high", "analog", "VALUE");
+  wrong("spindle slow 3", "slow 3", "slow SHARE");
+  wrong("encoder off", "encoder off", "plug|unplug");
+  wrong("pendant say", "pendant say", "say TEXT");
   wrong("surface -1 wave 1 0", "surface", "wave HEIGHT LENGTH");
 }
 

@@ -1,44 +1,18 @@
 #include "simulation/talk.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <utility>
 
+#include "common/base/duration_text.hpp"
 #include "common/base/text.hpp"
+#include "firmware/workcell_script.hpp"
 
 namespace kerf::simulation {
 namespace {
 
-using firmware::Input;
-using firmware::WorkcellEvent;
-
-constexpr std::array<std::pair<std::string_view, Input>, 6> kSwitches{{{"probe", Input::Probe},
-                                                                       {"door", Input::Door},
-                                                                       {"hold", Input::FeedHold},
-                                                                       {"start", Input::CycleStart},
-                                                                       {"reset", Input::Reset},
-                                                                       {"estop", Input::EmergencyStop}}};
-
-template <typename Value, std::size_t N>
-std::optional<Value> row_of(const std::array<std::pair<std::string_view, Value>, N>& rows, std::string_view word) {
-  for (const auto& [name, value] : rows) {
-    if (name == word) return value;
-  }
-  return std::nullopt;
-}
-
 std::string_view without_trailing_blanks(std::string_view line) {
   while (!line.empty() && base::is_blank(line.back())) line.remove_suffix(1);
   return line;
-}
-
-std::vector<std::string_view> words_of(std::string_view text) {
-  std::vector<std::string_view> words;
-  for (const std::string_view word : base::split(text, ' ')) {
-    if (!word.empty()) words.push_back(word);
-  }
-  return words;
 }
 
 /// Text that is nothing but `\xNN` escapes is sent raw.
@@ -50,37 +24,6 @@ bool is_only_hex_escapes(std::string_view text) {
     if (!escape.starts_with("\\x") || !base::parse_int(escape.substr(2), 16)) return false;
   }
   return true;
-}
-
-/// "+1s", "+200ms", "+0.5s"
-std::optional<Duration> time_of(std::string_view text) {
-  if (!text.starts_with('+')) return std::nullopt;
-  text.remove_prefix(1);
-  const double scale = text.ends_with("ms") ? 1e-3 : 1.0;
-  if (!text.ends_with('s')) return std::nullopt;
-  text.remove_suffix(text.ends_with("ms") ? 2 : 1);
-  const auto number = base::parse_decimal(text);
-  if (!number || *number < 0) return std::nullopt;
-  return base::from_seconds(*number * scale);
-}
-
-std::optional<bool> position_of(std::string_view word) {
-  if (word == "on" || word == "open") return true;
-  if (word == "off" || word == "close") return false;
-  return std::nullopt;
-}
-
-/// "limit X on", "door open"
-std::optional<WorkcellEvent> switch_of(std::string_view text) {
-  const auto words = words_of(text);
-  if (words.size() < 2) return std::nullopt;
-  const auto axis = words[1].size() == 1 ? vocabulary::axis_of(words[1].front()) : std::nullopt;
-  const auto active = position_of(words.back());
-  if (!active) return std::nullopt;
-  if (words[0] == "limit" && words.size() == 3 && axis) return firmware::LimitHeld{.axis = *axis, .active = *active};
-  const auto input = row_of(kSwitches, words[0]);
-  if (!input || words.size() != 2) return std::nullopt;
-  return firmware::InputChanged{.input = *input, .active = *active};
 }
 
 using ParsedAction = std::expected<decltype(TalkStep::action), TalkFault>;
@@ -106,11 +49,11 @@ ParsedAction at(std::string_view text) {
   constexpr std::string_view kUntil = "until ";
   if (text.starts_with(kUntil)) return WaitUntil{LinePattern(std::string(text.substr(kUntil.size())))};
   if (text.starts_with('+')) {
-    const auto time = time_of(text);
+    const auto time = base::parse_duration(text.substr(1));
     if (!time) return std::unexpected(TalkFault::BadTime);
     return LetTimePass{*time};
   }
-  const auto event = switch_of(text);
+  const auto event = firmware::parse_workcell_event(text);
   if (!event) return std::unexpected(TalkFault::BadSwitch);
   return MoveSwitch{*event};
 }
@@ -140,6 +83,12 @@ std::expected<void, TalkFault> read_header(Talk& talk, std::string_view text) {
     const auto count = base::parse_int<int>(value);
     if (!count || *count < 0) return std::unexpected(TalkFault::BadCount);
     (parts[0] == "axes" ? talk.hardware.axes : talk.hardware.tools) = *count;
+  } else if (parts[0] == "ports") {
+    const auto ports = firmware::parse_port_counts(value);
+    if (!ports) return std::unexpected(TalkFault::BadCount);
+    talk.hardware.ports = *ports;
+  } else if (parts[0] == "slow-memory") {
+    talk.hardware.slow_memory = true;
   } else if (parts[0] == "setting") {
     talk.settings.emplace_back(value);
   } else if (parts[0] == "power-up") {
@@ -218,9 +167,10 @@ std::string_view explain(TalkFault fault) {
   switch (fault) {
     case TalkFault::UnknownMark:
       return "a line begins with '->', '=>', '<-', '<~', '<!', 'P>', '<P', '@', '%' or '#', then one space";
-    case TalkFault::BadCount: return "this header wants a whole number";
+    case TalkFault::BadCount: return "this header wants whole numbers";
     case TalkFault::UnknownHeader:
-      return "this header is none of personality, axes, tools, setting, power-up, card, file, pendant and virtual-only";
+      return "this header is none of personality, axes, tools, ports, slow-memory, setting, power-up, card, file, "
+             "pendant and virtual-only";
     case TalkFault::HeaderAfterStep: return "headers stand before the first step";
     case TalkFault::UnknownPersonality:
       return "nobody knows who speaks: add '% personality grbl', 'rabbit', 'grblhal' or 'grblhal-expr'";

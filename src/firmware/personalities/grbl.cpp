@@ -31,6 +31,7 @@ constexpr CommandRow kCommands[] = {
 const Personality kGrbl = {
     .speaks = &vocabulary::dialects::kGrbl,
     .firmware = vocabulary::Firmware::Grbl,
+    .most = {.slow_memory = true},
     .start = {.blank_memory_error = true,
               .blank_memory_lists_settings = true,
               .homing_locks = true,

@@ -96,6 +96,8 @@ constexpr std::array<std::string_view, 2> kBuildRows[] = {
 constexpr Personality kUsual = {
     .speaks = &vocabulary::dialects::kGrblHal,
     .firmware = vocabulary::Firmware::GrblHal,
+    .most = {.tools = 32,  // grblHAL/core config.h N_TOOLS
+             .ports = {.digital_inputs = 16, .digital_outputs = 16, .analog_inputs = 16, .analog_outputs = 16}},
     .start = {.blank_memory_error = true,
               .has_homing_alarm = true,
               .same_alarm_is_silent = true,
