@@ -7,6 +7,7 @@
 
 #include "common/base/text.hpp"
 #include "firmware/personality.hpp"
+#include "sender/session/record_text.hpp"
 
 namespace kerf::simulation {
 namespace {
@@ -49,6 +50,10 @@ World::World(const WorldOptions& options)
   }
   now_ = opened_at;
   rig_.advance_to(now_);
+  if (options.keeps_wire_log) {
+    session::append_line(wire_log_,
+                         {.at = now_, .what = session::LogHeader{.machine = "virtual", .options = options.session}});
+  }
 }
 
 void World::open() {
@@ -114,6 +119,7 @@ void World::record(Direction direction, const std::string& bytes) {
 
 void World::settle() {
   auto out = session_.take_outbox();
+  keep_records();
   if (linked_) {
     to_controller_.send(now_, out.realtime);
     to_controller_.send(now_, out.lines);
@@ -126,6 +132,12 @@ void World::settle() {
   log_.insert(log_.end(), std::make_move_iterator(records.begin()), std::make_move_iterator(records.end()));
   static_cast<void>(rig_.take_lines_done());
   follow_link();
+}
+
+void World::keep_records() {
+  for (const session::Record& happened : session_.take_records()) {
+    if (options_.keeps_wire_log) session::append_line(wire_log_, happened);
+  }
 }
 
 void World::follow_link() {

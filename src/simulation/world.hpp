@@ -14,7 +14,8 @@
 #include "firmware/stored_state.hpp"
 #include "firmware/virtual_controller.hpp"
 #include "firmware/workcell.hpp"
-#include "sender/session/session.hpp"
+#include "sender/session/recorded_session.hpp"
+#include "sender/session/replay.hpp"
 #include "simulation/wire.hpp"
 
 namespace kerf::simulation {
@@ -30,6 +31,7 @@ struct WorldOptions {
   /// How long the controller is up before the link is opened.
   Duration head_start{};
   bool keeps_transcript = true;
+  bool keeps_wire_log = true;
 };
 
 /// A serial line of `baud`, on both sides: the wire paces, the session caps its window.
@@ -93,6 +95,8 @@ class World {
   [[nodiscard]] const std::vector<TranscriptEntry>& transcript() const { return transcript_; }
   /// One line an entry: seconds, `>` or `<`, the bytes with escapes.
   [[nodiscard]] std::string transcript_text() const;
+  /// The connection as a wire log has it: one record a line.
+  [[nodiscard]] const std::string& wire_log() const { return wire_log_; }
   /// Most bytes that were ever unanswered at once.
   [[nodiscard]] std::size_t most_bytes_in_flight() const { return most_in_flight_; }
 
@@ -102,17 +106,19 @@ class World {
   void move_bytes();
   void follow_link();
   void record(Direction direction, const std::string& bytes);
+  void keep_records();
 
   WorldOptions options_;
   Instant now_{};
   firmware::Rig rig_;
-  session::Session session_;
+  session::RecordedSession session_;
   Wire to_controller_;
   Wire from_controller_;
   bool linked_ = false;
   std::vector<session::Event> events_;
   std::vector<firmware::RigRecord> log_;
   std::vector<TranscriptEntry> transcript_;
+  std::string wire_log_;
   std::size_t most_in_flight_ = 0;
 };
 

@@ -7,7 +7,7 @@
 
 #include "scenario.hpp"
 
-namespace kerf::simulation {
+namespace kerf::scenarios {
 namespace {
 
 using namespace std::chrono_literals;
@@ -23,14 +23,14 @@ class Faults : public testing::TestWithParam<Firmware> {};
 INSTANTIATE_TEST_SUITE_P(Firmwares, Faults, testing::ValuesIn(kFirmwares),
                          [](const auto& param) { return word_for(param.param); });
 
-std::vector<firmware::RigRecord> logged(const World& world, RigRecordKind kind) {
+std::vector<firmware::RigRecord> logged(const simulation::World& world, RigRecordKind kind) {
   std::vector<firmware::RigRecord> records;
   std::ranges::copy_if(world.log(), std::back_inserter(records),
                        [kind](const auto& record) { return record.kind == kind; });
   return records;
 }
 
-bool account_adds_up(const World& world) {
+bool account_adds_up(const simulation::World& world) {
   const auto& ledger = world.session().ledger();
   return ledger.lines_entered() == ledger.lines_settled() + ledger.lines_struck_out() + ledger.size();
 }
@@ -68,7 +68,7 @@ TEST_P(Faults, ADoorThatOpensInTheMiddleOfAJobOnlyPausesIt) {
   ASSERT_TRUE(connect(world));
   ASSERT_TRUE(world.play("when line 20 door open\nafter 3s door close\n"));
   world.submit(session::StartJob{program(zigzag(10))});
-  ASSERT_TRUE(world.run_until([](const World& w) { return w.controller().state() == MachineState::Door; }, 1min));
+  ASSERT_TRUE(world.run_until([](const auto& w) { return w.controller().state() == MachineState::Door; }, 1min));
   world.run_for(10s);
   EXPECT_EQ(world.controller().state(), MachineState::Door);
   world.submit(session::ResumeJob{});
@@ -128,4 +128,4 @@ TEST_P(Faults, ABadWireIsSurvivedAndRepeatable) {
 }
 
 }  // namespace
-}  // namespace kerf::simulation
+}  // namespace kerf::scenarios

@@ -8,7 +8,7 @@
 
 #include "scenario.hpp"
 
-namespace kerf::simulation {
+namespace kerf::scenarios {
 namespace {
 
 using namespace std::chrono_literals;
@@ -23,7 +23,7 @@ class HoldsAndStops : public testing::TestWithParam<Firmware> {};
 INSTANTIATE_TEST_SUITE_P(Firmwares, HoldsAndStops, testing::ValuesIn(kFirmwares),
                          [](const auto& param) { return word_for(param.param); });
 
-bool is_held(const World& world) {
+bool is_held(const simulation::World& world) {
   return world.session().job()->phase == JobPhase::Held;
 }
 
@@ -134,4 +134,4 @@ TEST_P(HoldsAndStops, AnOpenDoorHoldsTheJobAndAClosedOneResumesIt) {
 }
 
 }  // namespace
-}  // namespace kerf::simulation
+}  // namespace kerf::scenarios

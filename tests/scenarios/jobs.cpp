@@ -7,7 +7,7 @@
 
 #include "scenario.hpp"
 
-namespace kerf::simulation {
+namespace kerf::scenarios {
 namespace {
 
 using namespace std::chrono_literals;
@@ -21,7 +21,7 @@ class Jobs : public testing::TestWithParam<Firmware> {};
 INSTANTIATE_TEST_SUITE_P(Firmwares, Jobs, testing::ValuesIn(kFirmwares),
                          [](const auto& param) { return word_for(param.param); });
 
-void expect_complete(World& world, const std::optional<job::JobState>& job, int rows) {
+void expect_complete(simulation::World& world, const std::optional<job::JobState>& job, int rows) {
   ASSERT_TRUE(job);
   EXPECT_EQ(job->phase, JobPhase::Finished) << job->reason;
   EXPECT_THAT(told<session::LineRefused>(world), IsEmpty());
@@ -119,4 +119,4 @@ TEST_P(Jobs, GiveTheSameBytesTwice) {
 }
 
 }  // namespace
-}  // namespace kerf::simulation
+}  // namespace kerf::scenarios

@@ -8,7 +8,7 @@
 
 #include "scenario.hpp"
 
-namespace kerf::simulation {
+namespace kerf::scenarios {
 namespace {
 
 using namespace std::chrono_literals;
@@ -25,7 +25,7 @@ class Links : public testing::TestWithParam<Firmware> {};
 INSTANTIATE_TEST_SUITE_P(Firmwares, Links, testing::ValuesIn(kFirmwares),
                          [](const auto& param) { return word_for(param.param); });
 
-std::size_t resets_sent(const World& world) {
+std::size_t resets_sent(const simulation::World& world) {
   std::size_t resets = 0;
   for (const auto& entry : world.transcript()) {
     if (entry.direction == Direction::ToController) {
@@ -87,7 +87,7 @@ TEST_P(Links, AMachineInMotionGetsNoLineAndNoReset) {
   world.inject_to_controller("G21G91G1X100F1000\n");
   world.run_for(1s);
   world.open();
-  ASSERT_TRUE(world.run_until([](const World& w) { return w.session().phase() == SessionPhase::Waiting; }, 10s));
+  ASSERT_TRUE(world.run_until([](const auto& w) { return w.session().phase() == SessionPhase::Waiting; }, 10s));
   ASSERT_THAT(told<session::ControllerBusy>(world), SizeIs(1));
   EXPECT_EQ(told<session::ControllerBusy>(world)[0].state, MachineState::Run);
   EXPECT_THAT(told<session::LineSent>(world), IsEmpty());
@@ -156,4 +156,4 @@ TEST_P(Links, RandomDeedsLeaveAnAccountThatAddsUp) {
 }
 
 }  // namespace
-}  // namespace kerf::simulation
+}  // namespace kerf::scenarios

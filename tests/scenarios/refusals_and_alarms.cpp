@@ -7,7 +7,7 @@
 
 #include "scenario.hpp"
 
-namespace kerf::simulation {
+namespace kerf::scenarios {
 namespace {
 
 using namespace std::chrono_literals;
@@ -157,4 +157,4 @@ TEST_P(RefusalsAndAlarms, APendantInTheMiddleInterruptsAndKerfKeepsQuiet) {
 }
 
 }  // namespace
-}  // namespace kerf::simulation
+}  // namespace kerf::scenarios

@@ -8,11 +8,26 @@
 #include <string_view>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "common/vocabulary/firmware.hpp"
 #include "sender/job/program.hpp"
 #include "simulation/world.hpp"
 
-namespace kerf::simulation {
+namespace kerf::scenarios {
+
+using namespace kerf::simulation;
+
+/// A world of which the wire log is replayed at its end: it must give the same bytes.
+class World : public simulation::World {
+ public:
+  using simulation::World::World;
+  ~World() {
+    if (const auto stop = session::replay_text(wire_log())) ADD_FAILURE() << "Replay: " << session::sentence_of(*stop);
+  }
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+};
 
 inline constexpr std::array kFirmwares{vocabulary::Firmware::Grbl, vocabulary::Firmware::Rabbit,
                                        vocabulary::Firmware::GrblHal};
@@ -67,12 +82,12 @@ inline std::string zigzag(int times, int length_mm = 40) {
 }
 
 /// Machine position of an axis, mm, of a quick machine.
-inline double position_mm(const World& world, std::size_t axis) {
+inline double position_mm(const simulation::World& world, std::size_t axis) {
   return world.controller().position_steps()[axis] / kStepsPerMm;
 }
 
 template <class Kind>
-std::vector<Kind> told(const World& world) {
+std::vector<Kind> told(const simulation::World& world) {
   std::vector<Kind> found;
   for (const auto& event : world.events()) {
     if (const auto* kind = std::get_if<Kind>(&event)) found.push_back(*kind);
@@ -80,32 +95,32 @@ std::vector<Kind> told(const World& world) {
   return found;
 }
 
-inline std::size_t lines_sent(const World& world, streaming::Purpose purpose) {
+inline std::size_t lines_sent(const simulation::World& world, streaming::Purpose purpose) {
   const auto sent = told<session::LineSent>(world);
   return static_cast<std::size_t>(
       std::ranges::count_if(sent, [purpose](const auto& line) { return line.purpose == purpose; }));
 }
 
-inline bool is_ready(const World& world) {
+inline bool is_ready(const simulation::World& world) {
   return world.session().phase() == session::SessionPhase::Ready;
 }
 
-inline bool is_over(const World& world) {
+inline bool is_over(const simulation::World& world) {
   return world.session().job() && job::is_final(world.session().job()->phase);
 }
 
 /// Opens the link and waits until the machine is known.
-inline bool connect(World& world) {
+inline bool connect(simulation::World& world) {
   world.open();
   return world.run_until(is_ready, std::chrono::seconds{60});
 }
 
 /// Connects, starts a program and lets it run for `time`.
-inline bool start(World& world, std::string text, Duration time) {
+inline bool start(simulation::World& world, std::string text, Duration time) {
   if (!connect(world)) return false;
   world.submit(session::StartJob{program(std::move(text))});
   world.run_for(time);
   return world.session().job().has_value();
 }
 
-}  // namespace kerf::simulation
+}  // namespace kerf::scenarios

@@ -7,7 +7,7 @@
 #include "scenario.hpp"
 #include "simulation/long_job.hpp"
 
-namespace kerf::simulation {
+namespace kerf::scenarios {
 namespace {
 
 using namespace std::chrono_literals;
@@ -33,4 +33,4 @@ TEST_P(ThreeHours, PassTwiceWithTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace kerf::simulation
+}  // namespace kerf::scenarios

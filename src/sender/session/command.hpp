@@ -2,9 +2,11 @@
 // What an operator may ask of a session. Commands are imperatives; a command that cannot be obeyed comes back as
 // CommandRefused.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <variant>
 
 #include <boost/describe.hpp>
@@ -64,6 +66,27 @@ struct SoftReset {};
 
 using Command = std::variant<StartJob, HoldJob, ResumeJob, StopJob, AbortJob, SendLine, SendRealtime, Unlock, Home, Jog,
                              CancelJog, SoftReset>;
+
+/// The names under which commands are written down, in the order of the variant.
+inline constexpr std::array<std::string_view, std::variant_size_v<Command>> kCommandNames{
+    "StartJob",     "HoldJob", "ResumeJob", "StopJob", "AbortJob",  "SendLine",
+    "SendRealtime", "Unlock",  "Home",      "Jog",     "CancelJog", "SoftReset",
+};
+static_assert(!kCommandNames.back().empty(), "name the new command here, in the order of the variant");
+
+// Logs hold commands with their members; StartJob's program is written down apart.
+BOOST_DESCRIBE_STRUCT(StartJob, (), ())
+BOOST_DESCRIBE_STRUCT(HoldJob, (), ())
+BOOST_DESCRIBE_STRUCT(ResumeJob, (), ())
+BOOST_DESCRIBE_STRUCT(StopJob, (), ())
+BOOST_DESCRIBE_STRUCT(AbortJob, (), ())
+BOOST_DESCRIBE_STRUCT(SendLine, (), (text))
+BOOST_DESCRIBE_STRUCT(SendRealtime, (), (byte))
+BOOST_DESCRIBE_STRUCT(Unlock, (), ())
+BOOST_DESCRIBE_STRUCT(Home, (), ())
+BOOST_DESCRIBE_STRUCT(Jog, (), (words))
+BOOST_DESCRIBE_STRUCT(CancelJog, (), ())
+BOOST_DESCRIBE_STRUCT(SoftReset, (), ())
 
 /// Why a command was not obeyed.
 enum class Refused {

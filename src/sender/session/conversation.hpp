@@ -1,5 +1,5 @@
 #pragma once
-// For tests: a session that talks to a controller made of a reply table, on a clock that the test moves.
+// For tests (behind <gtest/gtest.h>): a session that talks to a controller made of a reply table, on a clock that the test moves.
 
 #include <algorithm>
 #include <map>
@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "sender/job/program.hpp"
-#include "sender/session/session.hpp"
+#include "sender/session/record_text.hpp"
+#include "sender/session/recorded_session.hpp"
+#include "sender/session/replay.hpp"
 
 namespace kerf::session {
 
@@ -73,11 +75,18 @@ inline ReplyTable rabbit_replies() {
   return table;
 }
 
-/// Both ends. Everything that the session sends is kept in `sent`, realtime bytes and lines in the order in which they
-/// left.
+/// Both ends. What it recorded is replayed at its end, and must give the same bytes. Everything that the session sends
+/// is kept in `sent`, realtime bytes and lines in the order in which they left.
 class Conversation {
  public:
-  explicit Conversation(ReplyTable table, SessionOptions options = {}) : replies(std::move(table)), session(options) {}
+  explicit Conversation(ReplyTable table, SessionOptions options = {}) : replies(std::move(table)), session(options) {
+    append_line(wire_log_, {.at = now, .what = LogHeader{.options = options}});
+  }
+  ~Conversation() {
+    keep_records();
+    if (const auto stop = replay_text(wire_log_)) ADD_FAILURE() << "Replay: " << sentence_of(*stop);
+  }
+  Conversation(Conversation&&) = default;
 
   void open(std::string_view greeting = {}) {
     session.on_open(now);
@@ -122,15 +131,21 @@ class Conversation {
     return static_cast<std::size_t>(std::ranges::count(sent, byte));
   }
 
+  [[nodiscard]] const std::string& wire_log() const { return wire_log_; }
+
   ReplyTable replies;
-  Session session;
+  RecordedSession session;
   Instant now{};
   std::string sent;
   std::vector<std::string> lines_sent;
   std::vector<Event> events;
 
  private:
+  void keep_records() {
+    for (const Record& happened : session.take_records()) append_line(wire_log_, happened);
+  }
   void drain() {
+    keep_records();
     for (auto out = session.take_outbox(); !out.empty(); out = session.take_outbox()) {
       events.insert(events.end(), out.events.begin(), out.events.end());
       sent += out.realtime + out.lines;
@@ -146,10 +161,12 @@ class Conversation {
         line_.clear();
       }
       if (!heard.empty()) session.on_bytes(now, heard);
+      keep_records();
     }
   }
 
   std::string line_;
+  std::string wire_log_;
 };
 
 }  // namespace kerf::session

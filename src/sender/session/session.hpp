@@ -36,6 +36,8 @@ struct SessionOptions {
   /// Ask for the enumerations (`$EA` …) where the controller has them; `false` makes connecting faster.
   bool enumerate = true;
 };
+// Complete, because a log that lacks an option cannot be replayed.
+BOOST_DESCRIBE_STRUCT(SessionOptions, (), (link, reset_policy, enumerate))
 
 /// Why the link went away.
 enum class LinkLoss { Closed, Unplugged, TimedOut, Error };

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <optional>
 
+#include <boost/describe.hpp>
+
 #include "common/base/time.hpp"
 
 namespace kerf::streaming {
@@ -15,6 +17,7 @@ struct LinkPace {
   /// Realtime bytes wait behind everything sent before them (protocol.md 2 and 11, rule 12).
   bool network = false;
 };
+BOOST_DESCRIBE_STRUCT(LinkPace, (), (baud, network))
 
 /// Bytes given to the kernel cannot be overtaken: no more than this may lie ahead of a feed hold on a serial line.
 inline constexpr Duration kMostAheadOfHold = std::chrono::milliseconds{25};
