@@ -1,5 +1,6 @@
 #pragma once
-// For tests (behind <gtest/gtest.h>): a session that talks to a controller made of a reply table, on a clock that the test moves.
+// For tests (behind <gtest/gtest.h>): a session that talks to a controller made of a reply table, on a clock that the
+// test moves.
 
 #include <algorithm>
 #include <map>
