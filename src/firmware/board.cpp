@@ -194,7 +194,9 @@ AxisValues Board::position_mm() const {
 }
 
 AxisMask Board::limits() const {
-  return workcell.limits_at(executor.motor_steps_at(now), geometry());
+  const AxisSteps motors =
+      personality.homing.switch_sees_pulses ? executor.pulsed_steps_at(now) : executor.motor_steps_at(now);
+  return workcell.limits_at(motors, geometry());
 }
 
 bool Board::probe_triggered() const {

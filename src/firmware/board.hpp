@@ -159,7 +159,7 @@ struct Board {
   /// Targets of the blocks that may still be queued, by number.
   std::vector<AxisValues> block_targets_mm;
 
-  /// Lines that were read since power-on.
+  /// Lines that were read since power-on, or since the motion log began.
   std::uint32_t lines_read = 0;
   /// The same without `$` lines and empty ones.
   std::uint32_t blocks_begun = 0;

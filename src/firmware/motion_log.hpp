@@ -12,7 +12,7 @@ namespace kerf::firmware {
 
 /// A block as it entered the planner.
 struct PlannedMove {
-  /// Lines read since power-on, the one that planned this block included; 0 for a startup line.
+  /// Lines read since the log began, the one that planned this block included; 0 for a startup line.
   std::uint32_t line = 0;
   float length_mm = 0;
   float rate_mm_per_min = 0;

@@ -304,6 +304,7 @@ std::vector<double> VirtualController::position_mm() const {
 
 void VirtualController::keep_motion_log() {
   parts_->board.motion_log.emplace();
+  parts_->board.lines_read = 0;
 }
 
 const MotionLog& VirtualController::motion_log() const {

@@ -12,6 +12,7 @@
 #include "common/protocol/decode.hpp"
 #include "firmware/virtual_controller.hpp"
 #include "simulation/standstill.hpp"
+#include "simulation/switched_on.hpp"
 
 namespace kerf::simulation {
 namespace {
@@ -48,9 +49,7 @@ class CaseRun {
         resets_after_alarm_(is_reset_after_alarm(machine.personality.firmware)),
         controller_(machine.personality, machine.stored) {
     for (const auto& event : machine.workcell) controller_.submit(now_, event);
-    controller_.power_on(now_);
-    controller_.advance_to(now_);
-    static_cast<void>(controller_.take_outbox());
+    switch_on(controller_, now_);
   }
 
   CaseRecord run() {

@@ -10,6 +10,7 @@
 #include "common/protocol/decode.hpp"
 #include "firmware/virtual_controller.hpp"
 #include "simulation/standstill.hpp"
+#include "simulation/switched_on.hpp"
 
 namespace kerf::simulation {
 namespace {
@@ -122,9 +123,7 @@ class TraceRun {
         feeder_(as_sent(run.program), run.link, window_of(machine.personality.firmware)) {
     for (const auto& event : machine.workcell) controller_.submit(now_, event);
     if (machine.personality.full_buffer_drops_realtime) kept_free_ = kRoomForRealtime;
-    controller_.power_on(now_);
-    controller_.advance_to(now_);
-    static_cast<void>(controller_.take_outbox());
+    switch_on(controller_, now_);
     controller_.keep_motion_log();
     const std::string sent = as_sent(run.program);
     trace_.lines = static_cast<std::uint32_t>(std::ranges::count(sent, '\n'));

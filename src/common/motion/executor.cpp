@@ -60,6 +60,7 @@ void Executor::wake(Instant now) {
   const std::uint64_t last_period =
       current_.counts_per_tick == 0 ? rules_.longest_tick_counts : current_.counts_per_tick;
   segment_end_ = static_cast<std::int64_t>(rules_.wake_waits_last_period ? last_period : rules_.wake_counts);
+  segment_start_ = segment_end_;
   stage_ = Stage::Draining;
   if (rules_.restart_resets_bresenham) cursor_.leave();
   refill();
@@ -272,6 +273,13 @@ AxisSteps Executor::motor_steps_at(Instant at) const {
   return cursor_.motors(progress_until(at));
 }
 
+AxisSteps Executor::pulsed_steps_at(Instant at) const {
+  const std::int64_t per_tick = StepCursor::progress_per_tick(current_.smoothing);
+  if (stage_ == Stage::Stepping) return cursor_.motors(progress_until(at) - per_tick);
+  const bool has_stepped = stage_ == Stage::Draining && segment_start_ < segment_end_;
+  return cursor_.motors(has_stepped ? -per_tick : 0);
+}
+
 void Executor::set_position(const AxisSteps& steps) {
   cursor_.set_position(steps);
 }
@@ -345,7 +353,13 @@ void Executor::report_watch(std::size_t index) {
   events_.emplace_back(ThresholdCrossed{
       .at = instant_of(watch.seen_at), .threshold = watch.threshold, .steps = cursor_.position(ahead)});
   if (watch.threshold.freezes_axis) {
-    cursor_.freeze(static_cast<AxisMask>(cursor_.frozen() | vocabulary::mask_of(watch.threshold.axis)), ahead);
+    // The step that this interrupt decides goes out with the next one, unless this was the last switch: then the
+    // steppers are stopped before.
+    const bool goes_on = std::ranges::any_of(
+        watches_, [&](const Watch& other) { return other.threshold.freezes_axis && other.seen_at != watch.seen_at; });
+    const std::int64_t moved =
+        goes_on ? ticks_until(watch.seen_at) * StepCursor::progress_per_tick(current_.smoothing) : ahead;
+    cursor_.freeze(static_cast<AxisMask>(cursor_.frozen() | vocabulary::mask_of(watch.threshold.axis)), moved);
     place_watches();
   }
 }

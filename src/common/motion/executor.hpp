@@ -110,6 +110,8 @@ class Executor {
   [[nodiscard]] AxisSteps steps_at(Instant at) const;
   /// Where the motors are: without steps of frozen axes, with backlash take-up.
   [[nodiscard]] AxisSteps motor_steps_at(Instant at) const;
+  /// The same, less what the last interrupt decided: its pulses go out with the next one.
+  [[nodiscard]] AxisSteps pulsed_steps_at(Instant at) const;
   /// Sets the reported position (homing); motors keep theirs unless given.
   void set_position(const AxisSteps& steps);
   void set_motor_position(const AxisSteps& steps);
