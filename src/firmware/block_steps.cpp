@@ -116,6 +116,20 @@ class BlockSteps {
   Steps& steps_;
 };
 
+/// grblHAL: a block that begins with `$` is a jog, whatever its next two letters are: `/$J=X1F100`, `$N0=$J=X1F100`.
+std::optional<std::string> jog_words(const Board& board, std::string_view block) {
+  if (!board.personality.blocks_may_jog || block.find('$') == std::string_view::npos) return std::nullopt;
+  std::string text = normalised_block(block);
+  const bool had_slash = text.starts_with('/') && !board.switches.block_delete;
+  if (had_slash) text.erase(0, 1);
+  constexpr std::string_view kPrefix = "$J=";
+  if (!text.starts_with(kPrefix.front())) return std::nullopt;
+  // `/$G` is so short that what the line before left in the buffer is read: after a setting its `=`.
+  if (had_slash && text.size() < kPrefix.size()) return "=";
+  text.erase(0, kPrefix.size());
+  return text;
+}
+
 }  // namespace
 
 std::string normalised_block(std::string_view block) {
@@ -130,7 +144,20 @@ std::string normalised_block(std::string_view block) {
   return text;
 }
 
+std::expected<void, ErrorCode> add_jog_steps(Board& board, std::string_view words, Steps& steps) {
+  auto move = board.interpreter.interpret_jog(words);
+  if (!move) return std::unexpected(move.error());
+  if (board.personality.has_extended_settings && board.settings.flag(setting::kLimitJogs)) {
+    move->target_mm = board.clipped_to_travel(move->target_mm);
+  } else if (board.settings.flag(setting::kSoftLimits) && !board.is_within_travel(move->target_mm)) {
+    return std::unexpected(ErrorCode::TravelExceeded);
+  }
+  steps.emplace_back(PlanJog{.move = *move});
+  return {};
+}
+
 std::expected<void, ErrorCode> add_block_steps(Board& board, std::string_view block, Steps& steps) {
+  if (const auto words = jog_words(board, block)) return add_jog_steps(board, *words, steps);
   const AxisValues start_mm = board.interpreter.state().position_mm;
   std::vector<gcode::Action> actions;
   if (const auto result = board.interpreter.interpret(block, actions); !result) {

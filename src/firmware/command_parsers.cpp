@@ -1,9 +1,9 @@
 // How each firmware reads a `$` line. The order of the checks is the firmware's, because it decides the error number.
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/base/text.hpp"
+#include "common/gcode/numbers.hpp"
 #include "firmware/leading_number.hpp"
 #include "firmware/system_commands.hpp"
 
@@ -19,6 +19,14 @@ constexpr float kLargestByte = 255;
 const CommandRow* find_row(const Personality& personality, std::string_view name) {
   const auto found = std::ranges::find(personality.commands, name, &CommandRow::name);
   return found == personality.commands.end() ? nullptr : &*found;
+}
+
+/// `$HA` is a command on machines with an A axis only.
+bool has_its_axis(const Personality& personality, const CommandRow& row) {
+  if (row.command != Command::Home || row.prefix.empty()) return true;
+  const auto axis = vocabulary::axis_of(row.prefix.front());
+  const int built = personality.hardware.axes != 0 ? personality.hardware.axes : personality.dialect().axes_default;
+  return axis && static_cast<int>(vocabulary::index_of(*axis)) < built;
 }
 
 /// What stands before the first `=`, and what stands behind it.
@@ -164,7 +172,7 @@ Parsed parse_command_grblhal(const Personality& personality, std::string_view li
   if (parts.name.starts_with("HELP")) {
     return ParsedCommand{.command = Command::HelpTopics, .value = parts.name.substr(4)};
   }
-  if (const CommandRow* row = find_row(personality, parts.name)) {
+  if (const CommandRow* row = find_row(personality, parts.name); row != nullptr && has_its_axis(personality, *row)) {
     if (critical && !row->works_critically) return std::unexpected(ErrorCode::NotAllowedInCriticalEvent);
     if (row->takes_value || !parts.has_value) {
       if (!row->states.contains(state)) return std::unexpected(ErrorCode::IdleError);
@@ -174,12 +182,14 @@ Parsed parse_command_grblhal(const Personality& personality, std::string_view li
   }
   constexpr StateSet kSettingStates = {MachineState::Idle, MachineState::Alarm, MachineState::Check};
   if (!kSettingStates.contains(state)) return std::unexpected(ErrorCode::IdleError);
-  const auto number = leading_number(parts.name);
-  if (!number || number->value < 0 || number->value != std::floor(number->value)) {
-    return std::unexpected(ErrorCode::InvalidStatement);
-  }
+  std::uint8_t at = 0;
+  float number = 0.0F;
+  const bool is_number = gcode::read_float(gcode::rules_for(personality.dialect()), parts.name.c_str(), at, number);
+  if (!is_number || number < 0.0F || !gcode::is_whole(number)) return std::unexpected(ErrorCode::InvalidStatement);
+  // Ids have 32 bits, and what does not fit is cut.
+  const std::uint32_t id = gcode::to_uint32(number);
   return ParsedCommand{.command = parts.has_value ? Command::WriteSetting : Command::ReadSetting,
-                       .key = std::to_string(static_cast<int>(number->value)),
+                       .key = std::to_string(id),
                        .value = std::move(parts.value),
                        .has_value = parts.has_value};
 }

@@ -36,6 +36,10 @@ TEST(CommandParser, GrblHalIgnoresCaseAndBlanksInNames) {
   EXPECT_EQ(error_of(Firmware::GrblHal, "-1=3"), ErrorCode::InvalidStatement);
   EXPECT_EQ(error_of(Firmware::GrblHal, "10", MachineState::Run), ErrorCode::IdleError);
   EXPECT_EQ(error_of(Firmware::GrblHal, "RST"), ErrorCode::InvalidStatement);
+  EXPECT_EQ(error_of(Firmware::GrblHal, "X=1"), ErrorCode::Ok);
+  EXPECT_EQ(error_of(Firmware::GrblHal, "HA", MachineState::Run), ErrorCode::IdleError);
+  EXPECT_EQ(error_of(Firmware::GrblHal, std::string(40, '1')), ErrorCode::InvalidStatement);
+  EXPECT_EQ(personality.parse_command(personality, "4294967396", MachineState::Idle, false)->key, "0");
 }
 
 TEST(CommandParser, GrblHalBlocksInCriticalAlarm) {

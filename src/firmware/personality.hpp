@@ -84,6 +84,7 @@ enum class Command : std::uint8_t {
   ReportHomeSwitches,
   ReportLastEvents,
   ReportNothing,
+  NotAvailable,
   ListSpindles,
   ListSpindlesForMachines,
   HelpTopics,
@@ -185,6 +186,13 @@ struct StartRules {
   bool runs_lines_it_cannot_store = false;
 };
 
+/// A setting of old that only writes one bit of another one, if that one's first bit is set.
+struct ObsoleteSetting {
+  std::string_view key{};
+  int writes = 0;
+  unsigned bit = 0;
+};
+
 /// How status reports come about.
 struct StatusRules {
   bool at_once = false;  ///< Rabbit answers from its receive task, whatever the main loop does
@@ -263,6 +271,7 @@ struct Personality {
   bool version_has_user_text = true;
   bool codes_have_titles = true;  ///< `$EA`, `$EE`: else the title stays empty
   ErrorCode unknown_setting_error = ErrorCode::InvalidStatement;
+  ObsoleteSetting obsolete_setting{};
   bool reads_lines_in_sleep = false;
   bool sleep_needs_setting = false;  ///< grblHAL `$62`
   /// grblHAL: M2 and M30 that wait for the motion say `[MSG:Pgm End]` even if a reset or 0x19 ends the wait.
@@ -271,6 +280,7 @@ struct Personality {
   bool restore_resets = true;  ///< `$RST=` ends in a reset
   bool restores_network = false;
   bool tool_length_stays_metric = false;  ///< `[TLO:]` in spite of `$13`
+  bool blocks_may_jog = false;            ///< grblHAL: `/$J=X1F100` jogs, and so does a startup line
   bool tells_parameters = false;          ///< grblHAL: `$#=5`, `$#=_x`
   bool parameters_pause = false;          ///< Rabbit waits 100 ms before the ok of `$#`
   bool stored_writes_synchronise = false;

@@ -89,6 +89,7 @@ void SettingsStore::save(StoredState& stored) const {
 
 std::expected<void, ErrorCode> SettingsStore::write(std::string_view key, std::string_view text) {
   const Slot* slot = find(key);
+  if (slot == nullptr && key == personality_.obsolete_setting.key) return write_obsolete(text);
   if (slot == nullptr) {
     return std::unexpected(personality_.unknown_setting_error);
   }
@@ -103,6 +104,18 @@ std::expected<void, ErrorCode> SettingsStore::write(std::string_view key, std::s
     slots_.at(first_slot_.at(row) + static_cast<std::size_t>(match.axis)).number = static_cast<double>(exact->value);
   }
   apply_consequences();
+  return {};
+}
+
+std::expected<void, ErrorCode> SettingsStore::write_obsolete(std::string_view text) {
+  const ObsoleteSetting& obsolete = personality_.obsolete_setting;
+  const auto as_flag = vocabulary::find_setting(rows_, setting::kReportInches, axes_);
+  const auto target = vocabulary::find_setting(rows_, obsolete.writes, axes_);
+  const auto checked = personality_.check_setting(*this, *as_flag, text);
+  if (!checked) return std::unexpected(checked.error());
+  if (!flag(obsolete.writes)) return {};
+  const unsigned others = mask(obsolete.writes) & ~(1U << obsolete.bit);
+  set(*target, std::to_string(*checked == "0" ? others : others | 1U << obsolete.bit));
   return {};
 }
 

@@ -67,6 +67,7 @@ class SettingsStore {
 
  private:
   [[nodiscard]] int axes_with_settings() const;
+  std::expected<void, ErrorCode> write_obsolete(std::string_view text);
   [[nodiscard]] const Slot* slot_of(const vocabulary::SettingMatch& match) const;
   void set(const vocabulary::SettingMatch& match, std::string text);
   void apply_consequences();

@@ -8,6 +8,7 @@
 #include "common/gcode/numbers.hpp"
 #include "common/gcode/print_format.hpp"
 #include "firmware/block_steps.hpp"
+#include "firmware/leading_number.hpp"
 
 namespace kerf::firmware {
 
@@ -18,6 +19,14 @@ namespace {
 constexpr std::chrono::milliseconds kRabbitListPause{100};
 constexpr std::chrono::milliseconds kHomingAnnouncement{100};
 constexpr unsigned kLimitsStrictBit = 1;
+
+/// The number behind `$$=`, `$SED=` and `$#=`: what follows it does not matter (grblHAL system.c).
+std::expected<std::int32_t, ErrorCode> read_id(std::string_view text) {
+  const auto number = leading_number(text);
+  if (!number) return std::unexpected(ErrorCode::BadNumberFormat);
+  if (number->value != std::trunc(number->value)) return std::unexpected(ErrorCode::InvalidStatement);
+  return gcode::to_int32(number->value);
+}
 
 }  // namespace
 
@@ -118,10 +127,13 @@ SystemCommands::Result SystemCommands::dispatch_listing(const ParsedCommand& com
       listing_.setting_groups();
       listing_.setting_definitions();
       break;
-    case Command::SettingDescription:
-      if (!base::parse_int<int>(command.value)) return std::unexpected(ErrorCode::BadNumberFormat);
-      listing_.setting_description(command.value);
+    case Command::NotAvailable: return std::unexpected(ErrorCode::InvalidStatement);
+    case Command::SettingDescription: {
+      const auto id = read_id(command.value);
+      if (!id) return std::unexpected(id.error());
+      if (*id >= 0) listing_.setting_description(std::to_string(*id));
       break;
+    }
     case Command::ReportLimits: listing_.limits(); break;
     case Command::ReportHomeSwitches: listing_.home_switches(); break;
     case Command::ReportLastEvents: listing_.last_events(); break;
@@ -135,10 +147,9 @@ SystemCommands::Result SystemCommands::dispatch_listing(const ParsedCommand& com
 // `$#=5` by number, anything else is a name.
 SystemCommands::Result SystemCommands::tell_parameter(std::string_view text) {
   const std::string name{text};
-  std::uint8_t at = 0;
-  std::uint32_t number = 0;
-  const bool is_number = gcode::read_whole(name.c_str(), at, number) == ErrorCode::Ok;
-  const auto id = static_cast<std::uint16_t>(number);
+  const auto number = read_id(text);
+  const bool is_number = number && *number >= 0;
+  const auto id = static_cast<std::uint16_t>(number.value_or(0));
   const auto value = is_number ? board_.interpreter.parameter(id) : board_.interpreter.parameter(text);
   board_.say(protocol::NamedParameter{
       .name = is_number ? std::to_string(id) : name,
@@ -155,8 +166,10 @@ SystemCommands::Result SystemCommands::describe_setting(const ParsedCommand& com
     listing_.settings();
     return {};
   }
-  if (!base::parse_int<int>(command.value)) return std::unexpected(ErrorCode::BadNumberFormat);
-  const auto* slot = board_.settings.find(command.value);
+  const auto id = read_id(command.value);
+  if (!id) return std::unexpected(id.error());
+  if (*id < 0) return {};
+  const auto* slot = board_.settings.find(std::to_string(*id));
   if (slot == nullptr) return std::unexpected(ErrorCode::SettingDisabled);
   listing_.describe_setting(*slot);
   return {};
@@ -180,7 +193,8 @@ SystemCommands::Result SystemCommands::write_setting(const ParsedCommand& comman
   if (const Result written = board_.settings.write(command.key, command.value); !written) return written;
   board_.apply_settings();
   // The value and a check sum.
-  board_.store_settings(board_.settings.find(command.key)->match.row->type == vocabulary::SettingType::Decimal ? 5 : 2);
+  const auto* slot = board_.settings.find(command.key);
+  board_.store_settings(slot != nullptr && slot->match.row->type == vocabulary::SettingType::Decimal ? 5 : 2);
   if (command.key == std::to_string(setting::kReportInches)) board_.owe_work_offset();
   if (board_.personality.names_settings) restart_spindle_after(command, added);
   if (!board_.personality.has_extended_settings) return {};
@@ -286,14 +300,8 @@ SystemCommands::Result SystemCommands::home(const ParsedCommand& command, Steps&
 }
 
 SystemCommands::Result SystemCommands::jog(const ParsedCommand& command, Steps& steps) {
-  auto move = board_.interpreter.interpret_jog(command.value);
-  if (!move) return std::unexpected(move.error());
-  if (board_.personality.has_extended_settings && board_.settings.flag(setting::kLimitJogs)) {
-    move->target_mm = board_.clipped_to_travel(move->target_mm);
-  } else if (board_.settings.flag(setting::kSoftLimits) && !board_.is_within_travel(move->target_mm)) {
-    return std::unexpected(ErrorCode::TravelExceeded);
-  }
-  steps.insert(steps.end(), {PlanJog{.move = *move}, Answer{}});
+  if (const Result added = add_jog_steps(board_, command.value, steps); !added) return added;
+  steps.emplace_back(Answer{});
   return {};
 }
 
@@ -339,7 +347,9 @@ SystemCommands::Result SystemCommands::store_startup_line(const ParsedCommand& c
 }
 
 SystemCommands::Result SystemCommands::restore(const ParsedCommand& command, Steps& steps) {
-  const std::string_view what = command.value;
+  // grblHAL looks at the first letter only.
+  const bool one_letter = board_.personality.has_extended_settings;
+  const std::string_view what = std::string_view{command.value}.substr(0, one_letter ? 1 : std::string_view::npos);
   const bool names = board_.personality.restores_network;
   const bool everything = what == "*" || (names && base::iequals(what, "all"));
   const bool settings = everything || what == "$" || (names && base::iequals(what, "settings"));

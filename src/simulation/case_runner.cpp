@@ -22,7 +22,7 @@ using firmware::VirtualController;
 
 constexpr std::string_view kSoftReset = "\x18";
 /// No case takes longer; what is unanswered by then stays so.
-constexpr Duration kMostTime = 3600s;
+constexpr Duration kMostTime = 6h;
 /// Ten bits at 115200 baud.
 constexpr Duration kByteTime{86'806};
 /// They count as offsets whoever asked for them: a probe move prints the last one by itself.

@@ -48,8 +48,10 @@ class Collector {
   ErrorCode collect() {
     const char* const text = text_;
     std::uint8_t at = 0;
+    bool has_wrapped = false;
     while (text[at] != '\0') {
-      // A full line without a word that ends it would be read for ever once the 8-bit counter has wrapped.
+      // The 8-bit counter of a full line wraps: its first words come again. What none of them ends would be read for
+      // ever.
       const std::uint8_t began_at = at;
       const char letter = text[at++];
       if (rules_.reads_expressions) {
@@ -69,7 +71,9 @@ class Collector {
         return ErrorCode::Ok;
       }
       if (const ErrorCode error = add_word(letter); error != ErrorCode::Ok) return error;
-      if (at == 0) return ErrorCode::LineTooLong;
+      if (at != 0) continue;
+      if (has_wrapped) return ErrorCode::LineTooLong;
+      has_wrapped = true;
     }
     return ErrorCode::Ok;
   }
