@@ -124,8 +124,11 @@ std::optional<std::string> jog_words(const Board& board, std::string_view block)
   if (had_slash) text.erase(0, 1);
   constexpr std::string_view kPrefix = "$J=";
   if (!text.starts_with(kPrefix.front())) return std::nullopt;
-  // `/$G` is so short that what the line before left in the buffer is read: after a setting its `=`.
-  if (had_slash && text.size() < kPrefix.size()) return "=";
+  // `$G` is so short that what stood in the buffer before is read: the line as it came, or behind a slash the line
+  // before it, after a setting its `=`.
+  if (text.size() < kPrefix.size()) {
+    return std::string{had_slash ? "=" : block.substr(std::min(kPrefix.size(), block.size()))};
+  }
   text.erase(0, kPrefix.size());
   return text;
 }
@@ -138,7 +141,7 @@ std::string normalised_block(std::string_view block) {
   for (const char letter : block) {
     if (letter == ';') break;
     if (letter == '(') in_comment = true;
-    if (!in_comment && !base::is_blank(letter)) text += base::to_upper(letter);
+    if (!in_comment && letter != ')' && !base::is_blank(letter)) text += base::to_upper(letter);
     if (letter == ')') in_comment = false;
   }
   return text;
