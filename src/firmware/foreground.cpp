@@ -99,7 +99,7 @@ void Foreground::insert_front(Steps steps) {
 }
 
 bool Foreground::reads_lines() const {
-  if (board_.state == MachineState::Home || cycle_.is_suspended()) return false;
+  if (cycle_.is_suspended()) return false;
   return !board_.critical || board_.personality.dialect().critical_alarm_answers_lines;
 }
 

@@ -103,8 +103,8 @@ void Homing::end_move() {
   ends_at_ = kNever;
   moving_ = false;
   if (board_.motion_log) board_.motion_log->ended(board_.now, board_.steps());
+  // What was queued before `$H` stays queued, and runs when homing is over.
   board_.executor.reset(board_.now);
-  board_.planner.clear();
   settled_at_ = board_.now +
                 std::chrono::milliseconds{static_cast<std::int64_t>(board_.settings.number(setting::kHomingDebounce))};
 }

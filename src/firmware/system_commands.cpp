@@ -278,7 +278,11 @@ SystemCommands::Result SystemCommands::home(const ParsedCommand& command, Steps&
   if (const auto reason = lock_reason(true)) return std::unexpected(*reason);
   if (!settings.flag(setting::kHoming)) return std::unexpected(ErrorCode::HomingDisabled);
   const bool single_axis_unknown = !board_.personality.homing.homes_single_axes;
-  if (!command.key.empty() && (asked == 0 || single_axis_unknown)) return std::unexpected(ErrorCode::InvalidStatement);
+  if (!command.key.empty() && (asked == 0 || single_axis_unknown)) {
+    // Grbl counts as homing before it reads on, and stays so until a reset (gnea/grbl system.c).
+    if (single_axis_unknown) board_.state = MachineState::Home;
+    return std::unexpected(ErrorCode::InvalidStatement);
+  }
   std::vector<AxisMask> cycles = board_.homing_cycles();
   if (asked != 0) cycles = {asked};
   if (cycles.empty()) {
