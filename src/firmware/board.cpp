@@ -98,6 +98,7 @@ void Board::plan(const AxisValues& target_mm, const gcode::Feed& feed) {
 }
 
 void Board::plan_line(const motion::PathLine& line) {
+  executor.prepare();
   const auto added = planner.plan(line);
   if (motion_log && added == motion::Planner::Added::Queued) {
     motion_log->planned(lines_read, planner.at(planner.block_count() - 1));

@@ -166,14 +166,18 @@ void Executor::advance_to(Instant now) {
     if (at > now) break;
     now_ = at;
     if (needs_refill() && refill_at_ <= now_ && refill_at_ < instant_of(next_count())) {
-      refill();
-      // Where nothing more can be prepared for now, the next interrupt comes first.
-      refill_at_ = needs_refill() ? instant_of(next_count()) : kNever;
+      prepare();
     } else {
       run_next();
     }
   }
   now_ = now;
+}
+
+void Executor::prepare() {
+  refill();
+  // Where nothing more can be prepared for now, the next interrupt comes first.
+  refill_at_ = needs_refill() ? instant_of(next_count()) : kNever;
 }
 
 void Executor::run_next() {

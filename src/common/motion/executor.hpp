@@ -100,6 +100,9 @@ class Executor {
   void reset(Instant now);
 
   void advance_to(Instant now);
+  /// Fills the free segment places now, as firmware does each time before it plans a block: a block that stands alone
+  /// and fits into them ends at rest, whatever is planned behind it.
+  void prepare();
   /// Next instant at which anything can change for the owner: a segment place becomes free (so the planner may get
   /// room), a threshold is crossed, a block or the motion ends. kNever at rest.
   [[nodiscard]] Instant next_deadline() const;
