@@ -297,7 +297,7 @@ bool Foreground::answers_status() const {
   const StatusRules& rules = board_.personality.status;
   if (rules.at_once) return true;
   if (is_frozen_ || board_.is_locked() || (board_.critical && !rules.when_critical)) return false;
-  if (board_.state != MachineState::Home) return true;
+  if (board_.state != MachineState::Home || !homing_.is_active()) return true;
   return board_.personality.homing.tracks_axes && board_.reports(vocabulary::ReportBit::ReportWhenHoming);
 }
 
