@@ -11,6 +11,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/output.hpp"
+#include "common/base/text.hpp"
 #include "io/event_loop.hpp"
 #include "io/machine_url.hpp"
 #include "io/text_file.hpp"
@@ -80,12 +81,39 @@ std::optional<std::vector<NamedTalk>> load_talks(const VerifyOptions& options) {
   return talks.empty() ? std::nullopt : std::optional(std::move(talks));
 }
 
+/// What `[OPT:letters,blocks,bytes,axes,tools]` tells of the machine; zeros where it tells nothing.
+struct Build {
+  int axes = 0;
+  int tools = 0;
+};
+
+std::optional<Build> build_in(std::string_view line) {
+  constexpr std::string_view kOptions = "[OPT:";
+  if (!line.starts_with(kOptions)) return std::nullopt;
+  const auto fields = base::split(base::trim(line).substr(kOptions.size()), ',');
+  const auto count = [&](std::size_t at) {
+    if (at >= fields.size()) return 0;
+    std::string_view digits = fields[at];
+    digits = digits.substr(0, digits.find(']'));
+    return base::parse_int<int>(digits).value_or(0);
+  };
+  constexpr std::size_t kAxes = 3;
+  constexpr std::size_t kTools = 4;
+  return Build{.axes = count(kAxes), .tools = count(kTools)};
+}
+
 /// Why real firmware cannot hold this talk; empty if it can.
-std::string obstacle(const Talk& talk) {
+std::string obstacle(const Talk& talk, const Build& build) {
   if (talk.virtual_only_because) return "virtual only: " + *talk.virtual_only_because;
   if (talk.has_card) return "it needs a card with certain files";
   if (talk.has_pendant) return "somebody would have to work the pendant";
   if (talk.moves_switches()) return "somebody would have to press switches";
+  const firmware::Hardware& wanted = talk.hardware;
+  if (wanted.axes > build.axes)
+    return fmt::format("it needs {} axes, the machine tells of {}", wanted.axes, build.axes);
+  if (wanted.tools > build.tools) {
+    return fmt::format("it needs a table of {} tools, the machine tells of {}", wanted.tools, build.tools);
+  }
   return {};
 }
 
@@ -96,7 +124,9 @@ class LiveRunner {
 
   Result run(const Talk& talk) {
     result_ = {};
-    result_.skipped_because = obstacle(talk);
+    const bool asks_for_build = talk.hardware.axes > 0 || talk.hardware.tools > 0;
+    if (asks_for_build && !build_) build_ = ask_for_build();
+    result_.skipped_because = obstacle(talk, build_.value_or(Build{}));
     if (!result_.skipped_because.empty()) return result_;
     simulation::TalkConversation conversation(talk, loop_.now());
     conversation_ = &conversation;
@@ -128,6 +158,33 @@ class LiveRunner {
   }
 
  private:
+  /// Asks the machine with `$I`, once; a machine that does not answer tells of nothing.
+  Build ask_for_build() {
+    using namespace std::chrono_literals;
+    Build build;
+    std::string heard;
+    io::Transport* link = nullptr;
+    const auto opened = io::open_transport(loop_, url_,
+                                           {.opened =
+                                                [&] {
+                                                  timer_.arm(loop_.now() + 2s, [&] {
+                                                    link->write_lines("$I\n");
+                                                    timer_.arm(loop_.now() + 3s, [this] { loop_.stop(); });
+                                                  });
+                                                },
+                                            .received =
+                                                [&](std::string_view bytes) {
+                                                  heard += bytes;
+                                                  if (heard.ends_with("ok\r\n")) loop_.stop();
+                                                },
+                                            .lost = [this](const io::TransportError&) { loop_.stop(); }});
+    link = opened.get();
+    loop_.run();
+    timer_.disarm();
+    for (const std::string_view line : base::split(heard, '\n')) build = build_in(line).value_or(build);
+    return build;
+  }
+
   void on_lost(const io::TransportError& error) {
     if (!was_opened_) result_.link_trouble = io::explain(url_, error);
     conversation_->on_closed();
@@ -151,6 +208,7 @@ class LiveRunner {
   simulation::TalkConversation* conversation_ = nullptr;
   io::Transport* link_ = nullptr;
   bool was_opened_ = false;
+  std::optional<Build> build_;
   Result result_;
 };
 

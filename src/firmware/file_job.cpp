@@ -55,6 +55,13 @@ std::optional<char> FileJob::next(bool may_read) {
   return std::nullopt;
 }
 
+void FileJob::go_to(std::uint64_t position, std::int32_t line) {
+  position_ = position;
+  ahead_.clear();
+  taken_ = 0;
+  line_ = line;
+}
+
 double FileJob::percent() const {
   constexpr double kWhole = 100.0;
   return bytes_ == 0 ? 0.0 : static_cast<double>(position_) / static_cast<double>(bytes_) * kWhole;

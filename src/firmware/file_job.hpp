@@ -32,6 +32,11 @@ class FileJob {
   /// then comes one LF more, unless a line had just ended and the file was not looked at.
   [[nodiscard]] std::optional<char> next(bool may_read);
 
+  /// Where the next byte stands.
+  [[nodiscard]] std::uint64_t position() const { return position_; }
+  /// Reads on at a place behind the end of `line`.
+  void go_to(std::uint64_t position, std::int32_t line);
+
   /// The line that is being read, counted from 1; an N word that was executed moves it.
   [[nodiscard]] std::int32_t line() const { return line_; }
   void set_line(std::int32_t line) { line_ = line; }

@@ -42,6 +42,17 @@ TEST_F(FileJobTest, TellsHowFarItIs) {
   EXPECT_EQ(job.name(), "part.nc");
 }
 
+TEST_F(FileJobTest, ReadsOnAtAnotherPlace) {
+  card->put("/part.nc", "a\r\nb\r\nc\r\n");
+  job.begin(card, "/part.nc", 9);
+  for (const char expected : {'a', '\r'}) EXPECT_EQ(job.next(true), expected);
+  const auto place = job.position();
+  for (const char expected : {'b', '\r', 'c', '\r'}) EXPECT_EQ(job.next(true), expected);
+  job.go_to(place, 1);
+  EXPECT_EQ(job.next(true), 'b');
+  EXPECT_EQ(job.line(), 2);
+}
+
 TEST_F(FileJobTest, AStateThatReadsNothingClosesTheFile) {
   card->put("/part.nc", "G0\nG1\n");
   job.begin(card, "/part.nc", 6);

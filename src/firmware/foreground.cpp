@@ -11,6 +11,13 @@ namespace kerf::firmware {
 using vocabulary::AlarmCode;
 using vocabulary::FeedbackText;
 
+namespace {
+
+/// What a jump in a file takes, so that a loop without motion cannot stop the clock: the card looks for the place.
+constexpr std::chrono::microseconds kSeekTime{100};
+
+}  // namespace
+
 void Foreground::power_on() {
   const StartRules& rules = board_.personality.start;
   if (!board_.stored.initialised) {
@@ -167,13 +174,19 @@ void Foreground::execute_block(std::string_view text) {
     return;
   }
   FileJob& job = board_.job;
-  board_.interpreter.settings().file_line = job.is_read() && !job.is_drained() ? job.line() : 0;
+  const bool has_file = job.is_read() && !job.is_drained();
+  board_.interpreter.settings().file_line = has_file ? job.line() : 0;
+  board_.interpreter.settings().file_position = has_file ? std::optional(job.position()) : std::nullopt;
   const std::int32_t line_before = board_.interpreter.state().line_number;
   const auto result = add_block_steps(board_, text, steps_);
   if (!result) reader_.block_failed();
   // An N word moves the count of the file's lines (fs_stream.c onLineNumberAssigned).
   const std::int32_t line = board_.interpreter.state().line_number;
   if (job.is_read() && line != line_before && line != 0) job.set_line(line);
+  if (const auto jump = board_.interpreter.take_file_jump()) {
+    job.go_to(jump->position, jump->line);
+    steps_.emplace_back(Freeze{.duration = kSeekTime});
+  }
   steps_.emplace_back(Answer{.code = result ? ErrorCode::Ok : result.error()});
 }
 

@@ -26,12 +26,15 @@ bool Foreground::operator()(Answer& step) {
   }
   last_error_ = step.code;
   in_line_ = false;
+  // `O1 ERROR [254]`: the firmware's own mark of a line that somebody else answers. It latches and says ok.
+  constexpr int kHandled = 254;
+  const bool says_ok = step.code == ErrorCode::Ok || vocabulary::number_of(step.code) == kHandled;
   if (board_.job.is_read()) {
-    if (step.code == ErrorCode::Ok) return true;
+    if (says_ok) return true;
     board_.say(protocol::FileError{.code = vocabulary::number_of(step.code), .line = board_.job.line()});
     end_file_job();
   }
-  if (step.code == ErrorCode::Ok) {
+  if (says_ok) {
     board_.say(protocol::Ok{});
   } else {
     const int code = vocabulary::number_of(step.code);

@@ -383,8 +383,8 @@ void Reporter::say_parameters() {
   };
   const gcode::ParserState& state = board_.interpreter.state();
   if (state.modal.scaling) {
-    const auto axes = static_cast<std::ptrdiff_t>(board_.settings.axes());
-    board_.say(protocol::ScaledAxes{.factors = {state.scale_factor.begin(), state.scale_factor.begin() + axes}});
+    // The firmware prints them like lengths, in inches too.
+    board_.say(protocol::ScaledAxes{.factors = in_report_units(state.scale_factor)});
   }
   for (std::size_t index = 0; index < static_cast<std::size_t>(board_.interpreter.rules().work_offsets); ++index) {
     say_offset(kWorkOffsets.at(index), offsets.work.at(index));

@@ -57,6 +57,7 @@ ErrorCode check_macro_words(Block& block, BlockContext& context) {
   block.groups = {};
   block.groups.add(Group::G16);
   block.words.take_all(kArguments);
+  if (block.macro == MacroCall::ModalEachBlock) block.words.take('$');
   // The call of G65 begins here; a block that fails later leaves it open.
   if (block.macro == MacroCall::NonModal)
     return begin_macro(block.macro_request, context) ? ErrorCode::Ok : ErrorCode::FlowControlStackOverflow;

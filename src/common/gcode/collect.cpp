@@ -100,7 +100,8 @@ class Collector {
     }
     if (!block_.words.is_only('O')) return false;
     FlowRequest request;
-    const ErrorCode error = context_.flow.run(block_.label, reader_, static_cast<std::uint8_t>(at - 1), request);
+    const ErrorCode error = context_.flow.run(block_.label, reader_, static_cast<std::uint8_t>(at - 1),
+                                              context_.parameters, place_in_file(), request);
     if (request.alarm) context_.out.push_back(AlarmRequest{.code = *request.alarm});
     if (error != ErrorCode::Ok) {
       if (context_.settings.prints_debug) context_.out.push_back(OperatorMessage{.text = text_});
@@ -108,6 +109,12 @@ class Collector {
     }
     block_.finished = true;
     return true;
+  }
+
+  [[nodiscard]] std::optional<FilePlace> place_in_file() const {
+    const InterpreterSettings& settings = context_.settings;
+    if (!settings.file_position) return std::nullopt;
+    return FilePlace{.position = *settings.file_position, .line = block_.n != 0 ? block_.n : settings.file_line};
   }
 
   /// `O[1+2]` and `O<name>`; a plain number is read as the word's value.

@@ -163,6 +163,11 @@ ErrorCode ExpressionReader::read_operator(std::uint8_t& at, const Operation*& op
   return ErrorCode::ExpressionUnknownOperation;
 }
 
+ErrorCode ExpressionReader::read_again(const std::string& text, float& value) const {
+  std::uint8_t at = 0;
+  return ExpressionReader(rules_, values_, text.c_str()).read_expression(at, value);
+}
+
 ErrorCode ExpressionReader::read_expression(std::uint8_t& at, float& value) {
   if (text_[at] != '[') return ErrorCode::UnsupportedCommand;
   ++at;

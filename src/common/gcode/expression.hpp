@@ -22,6 +22,8 @@ class ExpressionReader {
   ErrorCode read_value(std::uint8_t& at, float& value);
   /// `[ ... ]`.
   ErrorCode read_expression(std::uint8_t& at, float& value);
+  /// The same in another text, from its beginning.
+  [[nodiscard]] ErrorCode read_again(const std::string& text, float& value) const;
   /// A value that is close to a whole number.
   ErrorCode read_whole_value(std::uint8_t& at, std::int32_t& value);
   /// `#5`, `#<name>`. Comments ask for `known` numbers.

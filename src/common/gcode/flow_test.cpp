@@ -49,6 +49,54 @@ TEST(Flow, LoopsWantAFile) {
   EXPECT_EQ(bench.send("o<> if [1]"), 83);
 }
 
+/// A program that is read from a file: its places are its lines.
+void run_file(Bench& bench, const std::vector<const char*>& lines) {
+  constexpr int kEnough = 1000;
+  std::uint64_t at = 0;
+  for (int read = 0; at < lines.size() && read < kEnough; ++read) {
+    const char* const line = lines.at(at);
+    bench.interpreter.settings().file_position = ++at;
+    EXPECT_EQ(bench.send(line), 0) << line;
+    if (const auto jump = bench.interpreter.take_file_jump()) at = jump->position;
+  }
+  EXPECT_EQ(at, lines.size());
+}
+
+TEST(Flow, LoopsGoBackInTheirFile) {
+  Bench bench(expression_rules());
+  run_file(bench, {"o1 while [#1 lt 3]", "#1=[#1+1]", "(print,w#1)", "o1 endwhile", "o2 do", "#1=[#1-1]", "(print,d#1)",
+                   "o2 while [#1 gt 1]", "o3 repeat [2]", "(print,r)", "o3 endrepeat", "o4 repeat [0]", "(print,no)",
+                   "o4 endrepeat", "o5 while [0]", "(print,no)", "o5 endwhile"});
+  EXPECT_EQ(said(bench), (std::vector<std::string>{"w1.000", "w2.000", "w3.000", "d2.000", "d1.000", "r", "r"}));
+}
+
+TEST(Flow, RoundsAndLoopsAreLeft) {
+  Bench bench(expression_rules());
+  run_file(bench,
+           {"o4 repeat [5]", "#2=[#2+1]", "o5 if [#2 eq 2]", "o4 continue", "o5 endif", "(print,#2)", "o6 if [#2 ge 3]",
+            "o4 break", "o6 endif", "o4 endrepeat", "o7 do", "o7 break", "o7 while [1]", "(print,end)"});
+  EXPECT_EQ(said(bench), (std::vector<std::string>{"1.000", "3.000", "end"}));
+}
+
+TEST(Flow, SubroutinesHaveValuesAndGiveOneBack) {
+  Bench bench(expression_rules());
+  run_file(bench,
+           {"o100 sub", "(print,in #1 #2)", "o101 if [#1 eq 9]", "o100 return [#1*2]", "o101 endif", "o100 endsub [#2]",
+            "#1=5 #2=6", "o100 call [7]", "(print,out #1 #<_value>)", "o100 call [9] [1]", "(print,out #1 #<_value>)"});
+  EXPECT_EQ(said(bench),
+            (std::vector<std::string>{"in 7.000 6.000", "out 5.000 6.000", "in 9.000 1.000", "out 5.000 10.000"}));
+}
+
+TEST(Flow, CallsWithinCallsAreLimited) {
+  Bench bench(expression_rules());
+  bench.interpreter.settings().file_position = 1;
+  EXPECT_EQ(bench.send("o1 sub"), 0);
+  EXPECT_EQ(bench.send("o1 endsub"), 0);
+  for (int depth = 0; depth < 10; ++depth) EXPECT_EQ(bench.send("o1 call"), 0) << depth;
+  EXPECT_EQ(bench.send("o1 call"), 82);
+  EXPECT_EQ(bench.send("o1 call"), 81) << "the error has forgotten the subroutine";
+}
+
 TEST(Flow, ErrorsAndAlarmsOnDemand) {
   Bench bench(expression_rules());
   EXPECT_EQ(bench.send("o1 error [5]"), 5);

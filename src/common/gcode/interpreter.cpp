@@ -114,7 +114,7 @@ void Interpreter::reset() {
   if (!rules_->reset_clears_tool) state_.tool = state_.tool_pending = old.tool;
   if (rules_->reset_clears_g92) offsets_.g92 = {};
   if (rules_->reset_clears_tool_length) offsets_.tool_length = {};
-  flow_.clear();
+  flow_.clear(parameters_);
   reload_offsets();
 }
 

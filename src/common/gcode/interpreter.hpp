@@ -63,6 +63,9 @@ class Interpreter {
   [[nodiscard]] std::optional<float> parameter(std::uint16_t id);
   [[nodiscard]] std::optional<float> parameter(std::string_view name);
 
+  /// Where the file that is run is read on after an O word; asked for once.
+  [[nodiscard]] std::optional<FilePlace> take_file_jump() { return flow_.take_jump(); }
+
   /// Work offset, G92 and tool length together: machine position minus this is the work position.
   [[nodiscard]] AxisValues work_coordinate_offset() const;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "common/vocabulary/axis.hpp"
 
@@ -55,6 +56,8 @@ struct InterpreterSettings {
   bool prints_debug = false;
   /// grblHAL: the line of the file that is run, for blocks without N; 0 while none is.
   std::int32_t file_line = 0;
+  /// grblHAL: where that file is read on behind this line; nothing while none is.
+  std::optional<std::uint64_t> file_position{};
 };
 
 }  // namespace kerf::gcode
