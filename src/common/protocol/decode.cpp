@@ -275,6 +275,17 @@ Found read_dollar(std::string_view line) {
   return SettingValue{string_of(name), string_of(value)};
 }
 
+// 110<tab>X-axis maximum rate<tab>mm/min<tab>float<tab>…
+Found read_table_row(std::string_view line) {
+  const std::size_t tab = line.find('\t');
+  if (tab == std::string_view::npos) return std::nullopt;
+  const std::optional<int> id = parse_int(line.substr(0, tab));
+  if (!id || *id < 0) return std::nullopt;
+  SettingTableRow row{.id = *id, .columns = {}};
+  for (const std::string_view column : base::split(line.substr(tab + 1), '\t')) row.columns.emplace_back(column);
+  return row;
+}
+
 // >G54G21:ok or >G99:error:20
 Found read_startup_result(std::string_view line) {
   if (const auto block = between(line, ">", ":ok")) return StartupResult{string_of(*block), 0};
@@ -314,6 +325,7 @@ Found read_line(std::string_view line) {
   if (line.starts_with('[')) return read_bracketed(line);
   if (line.starts_with('$')) return read_dollar(line);
   if (line.starts_with('>')) return read_startup_result(line);
+  if (!line.empty() && base::is_digit(line.front())) return read_table_row(line);
   std::optional<Welcome> welcome = decode_welcome(line);
   return welcome ? Found{std::move(*welcome)} : std::nullopt;
 }

@@ -105,6 +105,7 @@ struct Printer {
   std::string operator()(const SettingDescription& row) const {
     return bracketed("SETTINGDESCR", number(row.id) + "|" + row.text);
   }
+  std::string operator()(const SettingTableRow& row) const { return number(row.id) + "\t" + join(row.columns, '\t'); }
   std::string operator()(const FileRow& row) const {
     return bracketed("FILE", row.path + "|SIZE:" + number(row.size_bytes) + (row.unusable ? "|UNUSABLE" : ""));
   }

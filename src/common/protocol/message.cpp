@@ -39,6 +39,7 @@ constexpr std::array<std::string_view, std::variant_size_v<Message>> kNames{
     "SettingGroupRow",
     "SettingDefinition",
     "SettingDescription",
+    "SettingTableRow",
     "FileRow",
     "Unrecognized",
 };

@@ -329,6 +329,15 @@ struct SettingDescription {
   friend bool operator==(const SettingDescription&, const SettingDescription&) = default;
 };
 
+/// A row of `$ESH`: columns separated by tabs, the id first. `columns` are the others: name, unit, type, format,
+/// description, min, max, reboot, allow null. A description may hold a line feed: then the rest of the row is a line of
+/// its own, which is Unrecognized.
+struct SettingTableRow {
+  int id{};
+  std::vector<std::string> columns{};
+  friend bool operator==(const SettingTableRow&, const SettingTableRow&) = default;
+};
+
 /// `[FILE:/part.nc|SIZE:1234]`, `|UNUSABLE` behind; a directory has size -1.
 struct FileRow {
   std::string path{};
@@ -348,7 +357,7 @@ using Message =
                  StartupResult, ParserState, StoredOffset, HomePosition, ToolLengthOffset, ToolLengthReference,
                  ProbeResult, ToolRow, ScaledAxes, NamedParameter, Version, BuildOptions, AxisNames, NewOptions,
                  FirmwareName, BuildRow, Feedback, HelpRow, Echo, AlarmCodeRow, ErrorCodeRow, SettingGroupRow,
-                 SettingDefinition, SettingDescription, FileRow, Unrecognized>;
+                 SettingDefinition, SettingDescription, SettingTableRow, FileRow, Unrecognized>;
 
 BOOST_DESCRIBE_STRUCT(Ok, (), ())
 BOOST_DESCRIBE_STRUCT(ErrorAnswer, (), (code, text))
@@ -392,6 +401,7 @@ BOOST_DESCRIBE_STRUCT(ErrorCodeRow, (), (id, title, text))
 BOOST_DESCRIBE_STRUCT(SettingGroupRow, (), (id, parent, name))
 BOOST_DESCRIBE_STRUCT(SettingDefinition, (), (id, group, name, unit, type, format, min, max, reboot, allow_null))
 BOOST_DESCRIBE_STRUCT(SettingDescription, (), (id, text))
+BOOST_DESCRIBE_STRUCT(SettingTableRow, (), (id, columns))
 BOOST_DESCRIBE_STRUCT(FileRow, (), (path, size_bytes, unusable))
 BOOST_DESCRIBE_STRUCT(Unrecognized, (), (line))
 

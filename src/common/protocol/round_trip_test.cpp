@@ -203,7 +203,7 @@ TEST(RoundTrip, BuildInformation) {
 
 TEST(RoundTrip, Enumerations) {
   check("enumerations", [](const Draw&) -> Message {
-    switch (Draw::number(0, 7)) {
+    switch (Draw::number(0, 8)) {
       case 0: return AlarmCodeRow{Draw::number(0, 30), Draw::without_bar(), Draw::words() + "|" + Draw::words()};
       case 1: return ErrorCodeRow{Draw::number(0, 300), Draw::without_bar(), Draw::words()};
       case 2: return SettingGroupRow{Draw::number(0, 60), Draw::number(0, 60), Draw::words()};
@@ -219,6 +219,11 @@ TEST(RoundTrip, Enumerations) {
                                  .reboot = Draw::coin(),
                                  .allow_null = Draw::coin()};
       case 4: return SettingDescription{Draw::number(0, 900), Draw::words()};
+      case 7: {
+        SettingTableRow row{.id = Draw::number(0, 900), .columns = {}};
+        for (int column = Draw::number(1, 10); column > 0; --column) row.columns.push_back(Draw::words());
+        return row;
+      }
       case 5: return FileRow{"/" + Draw::words(), Draw::number(-1, 1'000'000), Draw::coin()};
       case 6: return HelpRow{Draw::words()};
       default: return Echo{Draw::words()};

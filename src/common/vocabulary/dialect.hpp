@@ -68,6 +68,15 @@ enum class ExtendedAsciiRule : std::uint8_t {
 };
 BOOST_DESCRIBE_ENUM(ExtendedAsciiRule, Dropped, KeptInSystemLines)
 
+/// What becomes of M6 in builds without a tool changer.
+enum class ToolChangeRule : std::uint8_t {
+  Unknown,
+  Refused,  ///< Grbl: error:20
+  Ignored,  ///< Rabbit: accepted, nothing happens
+  AsTold,   ///< grblHAL: `$341` and `[NEWOPT:]` say
+};
+BOOST_DESCRIBE_ENUM(ToolChangeRule, Unknown, Refused, Ignored, AsTold)
+
 /// Size of a queue as `Bf:` reports it when empty, and as `[OPT:` prints it (0: not printed).
 struct BufferSize {
   int usable{};
@@ -144,10 +153,15 @@ struct Dialect {
       false;                         ///< the line that a reset interrupts is still answered (protocol.md 4.4)
   bool answers_full_status = false;  ///< to 0x87
   bool can_enumerate_settings = false;
-  bool can_enumerate_codes = false;    ///< `$EA` and `$EE`
-  bool reads_single_settings = false;  ///< `$110`
-  bool welcome_on_connect = false;     ///< a new network client is greeted
-  bool opening_port_resets = false;    ///< DTR on an Uno-class board
+  bool can_enumerate_codes = false;         ///< `$EA` and `$EE`
+  bool reads_single_settings = false;       ///< `$110`
+  std::string_view named_settings_query{};  ///< lists settings that have a name only; empty where there are none
+  std::string_view homing_phases{};         ///< where the build fixes them: "Z,XY"
+  int homing_phase_setting = 0;             ///< the first phase's axis mask, where settings hold them
+  int homing_phase_count = 0;
+  ToolChangeRule tool_change = ToolChangeRule::Unknown;
+  bool welcome_on_connect = false;   ///< a new network client is greeted
+  bool opening_port_resets = false;  ///< DTR on an Uno-class board
   bool keeps_tool_over_reset = false;
   bool keeps_g92_over_reset = false;
   bool reports_homed = false;

@@ -9,13 +9,9 @@
 #include <boost/describe.hpp>
 
 #include "common/vocabulary/firmware.hpp"
+#include "sender/machine/features.hpp"
 
 namespace kerf::machine {
-
-/// Where a fact comes from: the controller said it, Kerf concludes it from something that it said, or Kerf assumes the
-/// safe case.
-enum class FactSource { Assumed, Inferred, Told };
-BOOST_DESCRIBE_ENUM(FactSource, Assumed, Inferred, Told)
 
 struct AxesFact {
   int count = 3;
@@ -58,20 +54,38 @@ struct SettingFact {
   std::optional<std::string> value{};
   std::string name{};
   std::string unit{};
+  /// -1 when unknown; see Capabilities::setting_groups.
+  int group_id = -1;
   std::string group{};
   /// Type code of protocol.md 5.2; -1 when unknown.
   int type = -1;
+  /// The type in words: "Bool", "Bitfield", "Text" …; empty when unknown.
+  std::string type_name{};
   std::string format{};
   std::string min{};
   std::string max{};
   bool reboot_required = false;
   bool allow_null = false;
+  /// What it does. Lines are separated by a line feed.
+  std::string help{};
+  FactSource help_source = FactSource::Assumed;
   /// Source of the description; the value is always told.
   FactSource source = FactSource::Assumed;
   bool operator==(const SettingFact&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(SettingFact, (),
-                      (id, value, name, unit, group, type, format, min, max, reboot_required, allow_null, source))
+                      (id, value, name, unit, group_id, group, type, type_name, format, min, max, reboot_required,
+                       allow_null, help, help_source, source))
+
+/// A row of `$EG`.
+struct SettingGroupFact {
+  int id = 0;
+  int parent = 0;
+  std::string name{};
+  FactSource source = FactSource::Assumed;
+  bool operator==(const SettingGroupFact&) const = default;
+};
+BOOST_DESCRIBE_STRUCT(SettingGroupFact, (), (id, parent, name, source))
 
 /// One other row of `$I`, as `[KEY:value]`.
 struct BuildFact {
@@ -98,6 +112,8 @@ struct Capabilities {
   std::string options{};
   /// Tokens of `[NEWOPT:]`, and what Kerf concludes without them.
   std::vector<std::string> capabilities;
+  /// The controller printed a `[NEWOPT:]`: what it does not list, it does not have.
+  bool lists_tokens = false;
   AxesFact axes;
   BuffersFact buffers;
   std::optional<int> tools{};
@@ -107,13 +123,20 @@ struct Capabilities {
   std::vector<CodeFact> alarms;
   std::vector<CodeFact> errors;
   std::vector<SettingFact> settings;
+  std::vector<SettingGroupFact> setting_groups;
+  std::vector<SpindleFact> spindles;
+  std::vector<OptionFact> option_meanings;
+  Features features;
 
   /// True for a token with or without a value: has("ATC") for "ATC=1".
   [[nodiscard]] bool has(std::string_view token) const;
+  /// The setting with this id ("110", "Homing/Enable"), or nothing.
+  [[nodiscard]] const SettingFact* find_setting(std::string_view id) const;
   bool operator==(const Capabilities&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(Capabilities, (),
                       (firmware, family, firmware_source, version, build, welcome, user_text, options, capabilities,
-                       axes, buffers, tools, build_rows, complete, alarms, errors, settings))
+                       lists_tokens, axes, buffers, tools, build_rows, complete, alarms, errors, settings,
+                       setting_groups, spindles, option_meanings, features))
 
 }  // namespace kerf::machine

@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include <boost/describe.hpp>
+
 #include "common/base/overloaded.hpp"
 #include "common/base/text.hpp"
 
@@ -22,7 +24,39 @@ bool has_sizes(const protocol::BuildOptions& options) {
   return options.planner_blocks || options.rx_bytes;
 }
 
+// Columns of `$ESH` behind the id.
+constexpr std::size_t kTableColumns = 9;
+constexpr std::size_t kHelpColumn = 4;
+
+/// grblHAL writes line breaks as the two characters `\n` (protocol.md 5.1).
+std::string with_line_feeds(std::string_view text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text.substr(at, 2) == "\\n") {
+      out += '\n';
+      ++at;
+    } else {
+      out += text[at];
+    }
+  }
+  return out;
+}
+
+bool is_coordinate_system(std::string_view name) {
+  return name.size() >= 3 && name.starts_with("G5");
+}
+
+std::string_view type_name(int type) {
+  const auto known = static_cast<vocabulary::SettingType>(type);
+  return boost::describe::enum_to_string(known, "");
+}
+
 }  // namespace
+
+const SettingFact* Capabilities::find_setting(std::string_view id) const {
+  const auto found = std::ranges::find(settings, id, &SettingFact::id);
+  return found == settings.end() ? nullptr : &*found;
+}
 
 bool Capabilities::has(std::string_view token) const {
   return std::ranges::any_of(capabilities, [token](const auto& known) { return name_of_token(known) == token; });
@@ -31,7 +65,10 @@ bool Capabilities::has(std::string_view token) const {
 void CapabilityCollector::fold(const protocol::Message& message) {
   std::visit(base::Overloaded{
                  [&](const protocol::Welcome& welcome) { welcome_ = welcome; },
-                 [&](const protocol::Version& version) { version_ = version; },
+                 [&](const protocol::Version& version) {
+                   version_ = version;
+                   build_rows_.clear();  // the first row of `$I`: the others follow
+                 },
                  [&](const protocol::BuildOptions& options) { options_ = options; },
                  [&](const protocol::AxisNames& names) { axis_names_ = names; },
                  [&](const protocol::NewOptions& options) { new_options_ = options; },
@@ -41,24 +78,78 @@ void CapabilityCollector::fold(const protocol::Message& message) {
                    const auto& position = report.machine_position ? report.machine_position : report.work_position;
                    if (position) axes_seen_ = static_cast<int>(position->size());
                  },
-                 [&](const protocol::BuildRow& row) {
-                   std::erase_if(build_rows_, [&](const BuildFact& known) { return known.key == row.key; });
-                   build_rows_.push_back({.key = row.key, .value = row.value});
-                 },
-                 [&](const protocol::SettingValue& value) {
-                   const auto known = std::ranges::find(values_, value.id, &protocol::SettingValue::id);
-                   if (known == values_.end())
-                     values_.push_back(value);
-                   else
-                     known->value = value.value;
-                 },
-                 [&](const protocol::SettingGroupRow& group) { groups_[group.id] = group.name; },
+                 [&](const protocol::BuildRow& row) { fold_build_row(row); },
+                 [&](const protocol::SettingValue& value) { fold_value(value); },
+                 [&](const protocol::StoredOffset& offset) { fold_offset(offset.name); },
+                 [&](const protocol::SettingTableRow& row) { fold_table_row(row); },
+                 [&](const protocol::SettingDescription& row) { helps_[row.id] = with_line_feeds(row.text); },
+                 [&](const protocol::Unrecognized& other) { fold_other(other.line); },
+                 [&](const protocol::Ok&) { open_row_.reset(); },
+                 [&](const protocol::SettingGroupRow& group) { groups_[group.id] = group; },
                  [&](const protocol::SettingDefinition& definition) { definitions_[definition.id] = definition; },
                  [&](const protocol::AlarmCodeRow& row) { lexicon_.learn(row); },
                  [&](const protocol::ErrorCodeRow& row) { lexicon_.learn(row); },
                  [](const auto&) {},
              },
              message);
+}
+
+std::string CapabilityCollector::id_of(std::string_view id) const {
+  const auto match = vocabulary::find_setting(dialect().settings, id);
+  if (!match || match->row->id < 0) return std::string{id};
+  return std::to_string(match->row->id + match->axis);
+}
+
+void CapabilityCollector::fold_value(const protocol::SettingValue& value) {
+  // A startup line of Rabbit in the list of all names: no setting.
+  if (value.id.starts_with("GCode/Line")) return;
+  const std::string id = id_of(value.id);
+  const auto known = std::ranges::find(values_, id, &protocol::SettingValue::id);
+  if (known == values_.end()) {
+    values_.push_back({.id = id, .value = value.value});
+  } else if (id == value.id) {
+    // Under its name a setting may be printed another way ("XY" for 3): the number's form is kept.
+    known->value = value.value;
+  }
+}
+
+void CapabilityCollector::fold_build_row(const protocol::BuildRow& row) {
+  if (row.key == "SPINDLE") {
+    const auto spindle = read_spindle_row(row.value);
+    if (!spindle) return;
+    std::erase_if(spindles_, [&](const SpindleFact& known) { return known.id == spindle->id; });
+    spindles_.push_back(*spindle);
+    return;
+  }
+  // Several rows may have one key: `[PLUGIN:…]`.
+  const BuildFact fact{.key = row.key, .value = row.value};
+  if (std::ranges::find(build_rows_, fact) == build_rows_.end()) build_rows_.push_back(fact);
+}
+
+void CapabilityCollector::fold_table_row(const protocol::SettingTableRow& row) {
+  open_row_.reset();
+  if (row.columns.size() <= kHelpColumn) {
+    open_row_ = row;
+    return;
+  }
+  helps_[row.id] = with_line_feeds(row.columns[kHelpColumn]);
+  if (row.columns.size() < kTableColumns) open_row_ = row;
+}
+
+void CapabilityCollector::fold_other(const std::string& line) {
+  if (const auto spindle = read_spindle_line(line); spindle && !knows_spindles()) spindles_.push_back(*spindle);
+  if (!open_row_ || open_row_->columns.empty()) return;
+  auto rest = base::split(line, '\t');
+  protocol::SettingTableRow row = *std::move(open_row_);
+  row.columns.back() += '\n';
+  row.columns.back() += rest.front();
+  for (std::size_t index = 1; index < rest.size(); ++index) row.columns.emplace_back(rest[index]);
+  fold_table_row(row);
+}
+
+void CapabilityCollector::fold_offset(const std::string& name) {
+  if (!is_coordinate_system(name)) return;
+  if (std::ranges::find(coordinate_systems_, name) == coordinate_systems_.end()) coordinate_systems_.push_back(name);
 }
 
 void CapabilityCollector::forget() {
@@ -140,44 +231,60 @@ std::vector<std::string> CapabilityCollector::tokens() const {
   return tokens;
 }
 
-SettingFact CapabilityCollector::describe_setting(const std::string& id) const {
+SettingFact CapabilityCollector::describe_from_table(const std::string& id) const {
   SettingFact fact{.id = id};
-  const auto number = base::parse_int(id);
-  if (number) {
-    if (const auto told = definitions_.find(*number); told != definitions_.end()) {
-      const auto& row = told->second;
-      const auto group = groups_.find(row.group);
-      return {.id = id,
-              .value = std::nullopt,
-              .name = row.name,
-              .unit = row.unit,
-              .group = group == groups_.end() ? "" : group->second,
-              .type = row.type,
-              .format = row.format,
-              .min = row.min,
-              .max = row.max,
-              .reboot_required = row.reboot,
-              .allow_null = row.allow_null,
-              .source = FactSource::Told};
-    }
-  }
   const auto match = vocabulary::find_setting(dialect().settings, std::string_view{id}, axes().count);
   if (!match) return fact;
   const auto& row = *match->row;
   fact.name = vocabulary::full_name(*match);
   fact.unit = row.unit;
   fact.type = static_cast<int>(row.type);
-  fact.format = row.format;
+  fact.format = vocabulary::format_of(row, axes().count);
   fact.min = row.min.text();
   fact.max = row.max.text();
   fact.reboot_required = row.reboot;
   fact.allow_null = row.allow_null;
-  fact.source = FactSource::Inferred;
-  const int group_id = vocabulary::group_of(*match);
-  const auto groups = vocabulary::setting_group_rows();
-  const auto group = std::ranges::find(groups, group_id, &vocabulary::SettingGroupRow::id);
-  if (group != groups.end()) fact.group = group->name;
+  fact.help = with_line_feeds(row.description);
+  fact.group_id = vocabulary::group_of(*match);
+  fact.source = fact.help_source = FactSource::Inferred;
   return fact;
+}
+
+SettingFact CapabilityCollector::describe_setting(const std::string& id) const {
+  SettingFact fact = describe_from_table(id);
+  const int number = base::parse_int(id).value_or(-1);
+  if (const auto told = definitions_.find(number); told != definitions_.end()) {
+    const auto& row = told->second;
+    fact.name = row.name;
+    fact.unit = row.unit;
+    fact.group_id = row.group;
+    fact.type = row.type;
+    fact.format = row.format;
+    fact.min = row.min;
+    fact.max = row.max;
+    fact.reboot_required = row.reboot;
+    fact.allow_null = row.allow_null;
+    fact.source = FactSource::Told;
+  }
+  if (const auto help = helps_.find(number); help != helps_.end()) {
+    fact.help = help->second;
+    fact.help_source = FactSource::Told;
+  }
+  fact.type_name = type_name(fact.type);
+  const auto known_groups = groups();
+  const auto group = std::ranges::find(known_groups, fact.group_id, &SettingGroupFact::id);
+  if (group != known_groups.end()) fact.group = group->name;
+  return fact;
+}
+
+std::vector<SettingGroupFact> CapabilityCollector::groups() const {
+  std::vector<SettingGroupFact> facts;
+  for (const auto& [id, row] : groups_) facts.push_back({id, row.parent, row.name, FactSource::Told});
+  if (!facts.empty() || dialect().settings.empty()) return facts;
+  for (const auto& row : vocabulary::setting_group_rows()) {
+    facts.push_back({row.id, row.parent, std::string{row.name}, FactSource::Inferred});
+  }
+  return facts;
 }
 
 std::vector<SettingFact> CapabilityCollector::settings() const {
@@ -218,6 +325,7 @@ Capabilities CapabilityCollector::capabilities(bool complete) const {
     result.tools = options_->tools;
   }
   result.capabilities = tokens();
+  result.lists_tokens = new_options_.has_value();
   result.axes = axes();
   result.buffers = buffers();
   result.build_rows = build_rows_;
@@ -225,6 +333,10 @@ Capabilities CapabilityCollector::capabilities(bool complete) const {
   result.alarms = lexicon_.alarms(known);
   result.errors = lexicon_.errors(known);
   result.settings = settings();
+  result.setting_groups = groups();
+  result.spindles = spindles_;
+  result.option_meanings = explain_options(result);
+  result.features = features_of(result, coordinate_systems_);
   return result;
 }
 

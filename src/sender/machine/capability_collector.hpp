@@ -27,6 +27,9 @@ class CapabilityCollector {
   [[nodiscard]] const Lexicon& lexicon() const { return lexicon_; }
 
   [[nodiscard]] Capabilities capabilities(bool complete) const;
+  /// The setting's id as it is known here: Rabbit's "X/MaxRate" is "110", "Homing/Squared" has a name only.
+  [[nodiscard]] std::string id_of(std::string_view id) const;
+  [[nodiscard]] bool knows_spindles() const { return !spindles_.empty(); }
 
  private:
   [[nodiscard]] FactSource family_source() const;
@@ -35,6 +38,13 @@ class CapabilityCollector {
   [[nodiscard]] std::vector<std::string> tokens() const;
   [[nodiscard]] std::vector<SettingFact> settings() const;
   [[nodiscard]] SettingFact describe_setting(const std::string& id) const;
+  [[nodiscard]] SettingFact describe_from_table(const std::string& id) const;
+  [[nodiscard]] std::vector<SettingGroupFact> groups() const;
+  void fold_value(const protocol::SettingValue& value);
+  void fold_build_row(const protocol::BuildRow& row);
+  void fold_table_row(const protocol::SettingTableRow& row);
+  void fold_other(const std::string& line);
+  void fold_offset(const std::string& name);
 
   std::optional<protocol::Welcome> welcome_;
   std::optional<protocol::Version> version_;
@@ -43,8 +53,13 @@ class CapabilityCollector {
   std::optional<protocol::NewOptions> new_options_;
   std::string firmware_name_;
   std::vector<BuildFact> build_rows_;
-  std::map<int, std::string> groups_;
+  std::map<int, protocol::SettingGroupRow> groups_;
   std::map<int, protocol::SettingDefinition> definitions_;
+  std::map<int, std::string> helps_;
+  /// The row of `$ESH` whose description may go on in the next line.
+  std::optional<protocol::SettingTableRow> open_row_;
+  std::vector<SpindleFact> spindles_;
+  std::vector<std::string> coordinate_systems_;
   /// In the order in which `$$` lists them.
   std::vector<protocol::SettingValue> values_;
   /// Axes of the last position seen, where `$I` does not tell.

@@ -261,6 +261,12 @@ std::vector<std::string> Handshake::questions() const {
   const bool enumerates = collector_.has_token("ENUMS");
   if (enumerates || dialect.can_enumerate_codes) list.insert(list.end(), {"$EA", "$EE"});
   if (enumerates) list.insert(list.end(), {"$EG", "$ES"});
+  if (enumerates && collector_.has_token("SED")) list.emplace_back("$ESH");
+  if (enumerates) list.emplace_back("$SPINDLESH");
+  if (std::ranges::find(asked_, "$SPINDLESH") != asked_.end() && !collector_.knows_spindles()) {
+    list.emplace_back("$SPINDLES");
+  }
+  if (!dialect.named_settings_query.empty()) list.emplace_back(dialect.named_settings_query);
   return list;
 }
 

@@ -62,6 +62,10 @@ inline ReplyTable grblhal_replies() {
   table.lines["$EE"] = "[ERRORCODE:20||Unsupported G-code command found in block]\r\nok\r\n";
   table.lines["$EG"] = "[SETTINGGROUP:43|42|X-axis]\r\nok\r\n";
   table.lines["$ES"] = "[SETTING:110|43|X-axis maximum rate|mm/min|6|#####0.000|||0|0]\r\nok\r\n";
+  table.lines["$ESH"] =
+      "$-Code\tSetting\tUnits\tDatatype\tData format\tSetting Description\tMin\tMax\r\n"
+      "110\tX-axis maximum rate\tmm/min\tfloat\t#####0.000\tMaximum rate.\t\t\t0\t0\r\nok\r\n";
+  table.lines["$SPINDLESH"] = "[SPINDLE:0|0|0|*DRV|PWM|0.0,1000.0]\r\nok\r\n";
   table.full_status = "<Idle|MPos:0.000,0.000,0.000|Bf:100,1023|FS:0,0|WCO:0.000,0.000,0.000|MPG:0|FW:grblHAL>\r\n";
   table.welcome = "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n";
   return table;

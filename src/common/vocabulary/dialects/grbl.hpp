@@ -44,6 +44,8 @@ inline constexpr Dialect kGrbl{
     .can_enumerate_settings = false,
     .can_enumerate_codes = false,
     .reads_single_settings = false,
+    .homing_phases = "Z,XY",
+    .tool_change = ToolChangeRule::Refused,
     .welcome_on_connect = false,
     .opening_port_resets = true,
     .keeps_tool_over_reset = false,
