@@ -130,7 +130,7 @@ struct Capabilities {
 
   /// True for a token with or without a value: has("ATC") for "ATC=1".
   [[nodiscard]] bool has(std::string_view token) const;
-  /// The setting with this id ("110", "Homing/Enable"), or nothing.
+  /// The setting with this id ("110", "Homing/Squared") or name (Rabbit: "X/MaxRate" is "110"), or nothing.
   [[nodiscard]] const SettingFact* find_setting(std::string_view id) const;
   bool operator==(const Capabilities&) const = default;
 };

@@ -54,8 +54,15 @@ std::string_view type_name(int type) {
 }  // namespace
 
 const SettingFact* Capabilities::find_setting(std::string_view id) const {
-  const auto found = std::ranges::find(settings, id, &SettingFact::id);
-  return found == settings.end() ? nullptr : &*found;
+  const auto find = [this](std::string_view key) {
+    const auto same = [key](const SettingFact& setting) { return base::iequals(setting.id, key); };
+    const auto found = std::ranges::find_if(settings, same);
+    return found == settings.end() ? nullptr : &*found;
+  };
+  if (const SettingFact* setting = find(id)) return setting;
+  const auto match = vocabulary::find_setting(vocabulary::dialect_of(family).settings, id);
+  if (!match || match->row->id < 0) return nullptr;
+  return find(std::to_string(match->row->id + match->axis));
 }
 
 bool Capabilities::has(std::string_view token) const {

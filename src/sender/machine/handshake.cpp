@@ -288,6 +288,15 @@ void Handshake::finish(bool complete) {
   enter(HandshakeStage::Ready, kNever);
 }
 
+void Handshake::refresh() {
+  if (stage_ == HandshakeStage::Ready) capabilities_ = collector_.capabilities(capabilities_.complete);
+}
+
+void Handshake::learn(const protocol::SettingValue& setting) {
+  collector_.fold(setting);
+  refresh();
+}
+
 void Handshake::fail(HandshakeFailure failure, std::string sentence) {
   orders_.emplace_back(ForgetQuestions{});
   orders_.emplace_back(Failure{.failure = failure, .sentence = std::move(sentence)});

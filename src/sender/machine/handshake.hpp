@@ -105,6 +105,10 @@ class Handshake {
   [[nodiscard]] HandshakeStage stage() const { return stage_; }
   [[nodiscard]] std::vector<HandshakeOrder> take_orders();
   [[nodiscard]] const Capabilities& capabilities() const { return capabilities_; }
+  /// Settings were listed again after Ready: what is told by capabilities() follows.
+  void refresh();
+  /// A setting was written by hand.
+  void learn(const protocol::SettingValue& setting);
   [[nodiscard]] const CapabilityCollector& collector() const { return collector_; }
 
  private:

@@ -39,4 +39,9 @@ bool reads_lines(MachineState state) {
   }
 }
 
+bool may_store_settings(const Snapshot& snapshot) {
+  if (snapshot.pendant_in_control || snapshot.reset_required || !snapshot.controller_file.empty()) return false;
+  return snapshot.state == MachineState::Idle || snapshot.state == MachineState::Alarm;
+}
+
 }  // namespace kerf::machine

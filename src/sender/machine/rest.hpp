@@ -14,4 +14,8 @@ namespace kerf::machine {
 /// Lines are read and answered (protocol.md 6.6), as far as the state tells: a critical alarm may still be silent.
 [[nodiscard]] bool reads_lines(vocabulary::MachineState state);
 
+/// A setting may be written: Idle, or an alarm in which lines are answered, and nobody else has the machine
+/// (protocol.md 6.7).
+[[nodiscard]] bool may_store_settings(const Snapshot& snapshot);
+
 }  // namespace kerf::machine

@@ -8,11 +8,13 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include <boost/describe.hpp>
 
 #include "sender/job/program.hpp"
 #include "sender/job/timeline.hpp"
+#include "sender/machine/settings_plan.hpp"
 
 namespace kerf::session {
 
@@ -64,8 +66,21 @@ struct CancelJog {};
 /// 0x18, also while the handshake waits for a machine that it may not reset on its own account.
 struct SoftReset {};
 
+/// Writes settings to a machine at rest, one at a time, each read back; all of them, or none (SettingsChange). The
+/// reason is kept with the result.
+struct ChangeSettings {
+  std::vector<machine::SettingAssignment> settings;
+  std::string reason;
+};
+
+/// What the machine had when it was last seen, and when that was, in words. What differs is told once it is identified.
+struct RecallSettings {
+  std::vector<machine::SettingAssignment> settings;
+  std::string since;
+};
+
 using Command = std::variant<StartJob, HoldJob, ResumeJob, StopJob, AbortJob, SendLine, SendRealtime, Unlock, Home, Jog,
-                             CancelJog, SoftReset>;
+                             CancelJog, SoftReset, ChangeSettings, RecallSettings>;
 
 /// The names under which commands are written down, in the order of the variant.
 inline constexpr std::array<std::string_view, std::variant_size_v<Command>> kCommandNames{
@@ -100,9 +115,10 @@ enum class Refused {
   NotAtRest,         ///< resume needs Hold:0, Door:0 or Tool
   LineTooLong,       ///< longer than the controller takes
   RealtimeInLine,    ///< `?`, `!`, `~` or a byte that is not ASCII text
+  SettingsUnderWay,  ///< settings are being changed
   NeverSent,         ///< would desynchronise or crash the controller (protocol.md 11, rule 15)
 };
 BOOST_DESCRIBE_ENUM(Refused, NotConnected, NotIdentified, PendantInControl, MachineNotIdle, MachineInAlarm, JobUnderWay,
-                    NoJob, NotAtRest, LineTooLong, RealtimeInLine, NeverSent)
+                    NoJob, NotAtRest, LineTooLong, RealtimeInLine, SettingsUnderWay, NeverSent)
 
 }  // namespace kerf::session

@@ -15,6 +15,7 @@
 #include "sender/machine/handshake.hpp"
 #include "sender/machine/snapshot.hpp"
 #include "sender/session/command.hpp"
+#include "sender/session/settings_change.hpp"
 #include "sender/streaming/ledger.hpp"
 
 namespace kerf::session {
@@ -138,8 +139,30 @@ BOOST_DESCRIBE_STRUCT(LinkSilent, (), (silent_for_s))
 struct LinkAnswering {};
 BOOST_DESCRIBE_STRUCT(LinkAnswering, (), ())
 
+/// A setting was written and read back, `step` of `steps`.
+struct SettingWritten {
+  machine::SettingDifference setting;
+  std::size_t step = 0;
+  std::size_t steps = 0;
+};
+BOOST_DESCRIBE_STRUCT(SettingWritten, (), (setting, step, steps))
+
+/// A ChangeSettings has come to its end.
+struct SettingsChanged {
+  SettingsResult result;
+};
+BOOST_DESCRIBE_STRUCT(SettingsChanged, (), (result))
+
+/// The machine's settings are not those of the last connection (RecallSettings).
+struct SettingsDrifted {
+  std::vector<machine::SettingDifference> differences;
+  std::string sentence;
+};
+BOOST_DESCRIBE_STRUCT(SettingsDrifted, (), (differences, sentence))
+
 using Event = std::variant<LineSent, LineReceived, HandshakeNoted, ControllerReset, ControllerBusy, ControllerFound,
                            HandshakeFailed, StatusReported, ControllerRestarted, LinesLost, AlarmRaised, LineRefused,
-                           JobStarted, JobProgressed, JobEnded, CommandRefused, LinkSilent, LinkAnswering>;
+                           JobStarted, JobProgressed, JobEnded, CommandRefused, LinkSilent, LinkAnswering,
+                           SettingWritten, SettingsChanged, SettingsDrifted>;
 
 }  // namespace kerf::session

@@ -19,6 +19,7 @@ std::string sentence_of(Refused reason) {
     case Refused::LineTooLong: return "The line is longer than this controller takes.";
     case Refused::RealtimeInLine:
       return "The line holds a character that a controller would obey at once (?, !, ~) or that is not plain ASCII.";
+    case Refused::SettingsUnderWay: return "Settings are being changed; wait until that is done.";
     case Refused::NeverSent: return "This is known to crash or confuse controllers and is never sent.";
   }
   return "The command cannot be obeyed now.";

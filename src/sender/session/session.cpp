@@ -52,6 +52,8 @@ void Session::on_open(Instant now) {
   streamer_.pause(false);
   reset_pending_until_.reset();
   poller_.stop();
+  settings_change_.reset();
+  recalled_.reset();
   handshake_.on_open(now);
   settle_everything(now);
 }
@@ -60,13 +62,15 @@ void Session::on_closed(Instant now, LinkLoss) {
   if (!open_) return;
   open_ = false;
   strike_out();
-  for (const Purpose purpose : {Purpose::Operator, Purpose::Question, Purpose::ClearLatch, Purpose::JobSync}) {
+  for (const Purpose purpose :
+       {Purpose::Operator, Purpose::Question, Purpose::ClearLatch, Purpose::JobSync, Purpose::Setting}) {
     streamer_.drop_queued(purpose);
   }
   poller_.stop();
   reset_pending_until_.reset();
   handshake_.on_closed();
   if (has_job()) job_->on_link_closed(now);
+  if (changes_settings()) settings_change_->interrupt("the link was closed");
   settle_everything(now);
   outbox_.realtime.clear();
   outbox_.lines.clear();
@@ -92,6 +96,10 @@ void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
                  [&](const protocol::StatusReport&) { on_report(now, before); },
                  [&](const protocol::Welcome&) { on_welcome(now); },
                  [&](const protocol::AlarmRaised& alarm) { on_alarm(now, alarm.code); },
+                 [&](const protocol::SettingValue& setting) {
+                   const auto id = handshake_.collector().id_of(setting.id);
+                   if (changes_settings() && id == setting.id) settings_change_->on_value(id, setting.value);
+                 },
                  [](const auto&) {},
              },
              received.message);
@@ -100,7 +108,7 @@ void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
 
 void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code) {
   if (!line) return;
-  if (error_code == 0) model_.on_line_accepted(line->text);
+  model_.on_line_answered(line->text, error_code == 0);
   std::string meaning;
   if (error_code != 0) {
     const auto& known = handshake_.collector();
@@ -120,8 +128,13 @@ void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& l
       if (has_job()) job_->on_sync_answered(now);
       break;
     case Purpose::Question: handshake_.on_answer(now, error_code); break;
-    case Purpose::ClearLatch:
-    case Purpose::Operator: break;
+    case Purpose::Setting:
+      if (changes_settings()) settings_change_->on_answer(now, error_code, meaning);
+      break;
+    case Purpose::Operator:
+      if (error_code == 0) on_operator_line_accepted(now, line->text);
+      break;
+    case Purpose::ClearLatch: break;
   }
   if (error_code == 0) return;
   tell(LineRefused{
@@ -129,7 +142,8 @@ void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& l
       .refusal = {.file_line = line->file_line, .text = line->text, .code = error_code, .meaning = std::move(meaning)},
       .latched_repeat = latched_repeat});
   // Otherwise the next line would be refused on behalf of this one (protocol.md 6.4).
-  if (line->purpose == Purpose::Operator && handshake_.collector().dialect().error_latch) {
+  const bool by_hand = line->purpose == Purpose::Operator || line->purpose == Purpose::Setting;
+  if (by_hand && handshake_.collector().dialect().error_latch) {
     streamer_.enqueue(Purpose::ClearLatch, "");
   }
 }
@@ -137,6 +151,7 @@ void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& l
 void Session::on_report(Instant now, MachineState before) {
   if (poller_.on_report(now, snapshot().auto_report_ms > 0)) tell(LinkAnswering{});
   tell(StatusReported{.before = before, .after = snapshot().state});
+  if (changes_settings()) settings_change_->on_report(now, snapshot());
   if (!has_job()) return;
   job_->on_snapshot(now, snapshot());
   if (has_job()) tell(JobProgressed{job_->state()});
@@ -148,10 +163,12 @@ void Session::on_welcome(Instant now) {
   streamer_.pause(false);
   strike_out();
   if (has_job()) job_->on_welcome(now);
+  if (changes_settings()) settings_change_->interrupt("the controller restarted");
   if (!is_ready()) return;
   tell(ControllerRestarted{.asked = asked});
   poller_.stop();
-  handshake_.restart(now, asked);
+  // Where it is not known in which units reports are, everything is asked for again.
+  handshake_.restart(now, asked && model_.knows_units());
 }
 
 void Session::on_alarm(Instant now, int code) {
@@ -185,6 +202,7 @@ void Session::settle_everything(Instant now) {
   follow_handshake(now);
   // First what the job says: after a refusal not one line more may leave.
   follow_job(now);
+  follow_settings(now);
   pump(now);
 }
 
@@ -217,6 +235,7 @@ void Session::obey_handshake(Instant now, const machine::HandshakeOrder& order) 
                                        solo_policy_of(capabilities().family));
                    poller_.start(now, poll_period(options_.link));
                    tell(ControllerFound{success.sentence});
+                   tell_drift();
                  },
                  [&](const machine::Failure& failure) {
                    tell(HandshakeFailed{.failure = failure.failure, .sentence = failure.sentence});
@@ -256,12 +275,15 @@ void Session::obey_job(Instant now, job::JobOrder order) {
 void Session::pump(Instant now) {
   if (!open_ || snapshot().pendant_in_control) return;
   for (auto& line : streamer_.pump(now, outbox_.lines)) {
+    model_.on_line_sent(line.text);
     tell(LineSent{.purpose = line.purpose, .file_line = line.file_line, .text = std::move(line.text)});
   }
 }
 
 void Session::poll(Instant now) {
   if (!is_ready() || snapshot().pendant_in_control) return;
+  // An AVR that stores loses what it receives meanwhile (protocol.md 6.5).
+  if (changes_settings() && settings_change_->is_storing()) return;
   if (poller_.is_due(now)) {
     send_byte(Realtime::StatusQuery);
     poller_.on_asked(now);
@@ -276,6 +298,7 @@ void Session::advance_to(Instant now) {
   if (!open_) return;
   handshake_.advance_to(now, snapshot());
   if (has_job()) job_->advance_to(now);
+  if (changes_settings()) settings_change_->advance_to(now);
   if (reset_pending_until_ && now >= *reset_pending_until_) {
     reset_pending_until_.reset();
     streamer_.pause(false);
@@ -288,7 +311,10 @@ Instant Session::next_deadline() const {
   if (!open_) return kNever;
   Instant deadline = std::min(handshake_.next_deadline(), reset_pending_until_.value_or(kNever));
   if (has_job()) deadline = std::min(deadline, job_->next_deadline());
-  if (is_ready() && !snapshot().pendant_in_control) deadline = std::min(deadline, poller_.next_deadline());
+  if (changes_settings()) deadline = std::min(deadline, settings_change_->next_deadline());
+  const bool is_storing = changes_settings() && settings_change_->is_storing();
+  const bool polls = is_ready() && !snapshot().pendant_in_control && !is_storing;
+  if (polls) deadline = std::min(deadline, poller_.next_deadline());
   return deadline;
 }
 

@@ -21,6 +21,7 @@
 #include "sender/machine/snapshot.hpp"
 #include "sender/session/command.hpp"
 #include "sender/session/event.hpp"
+#include "sender/session/settings_change.hpp"
 #include "sender/session/status_poller.hpp"
 #include "sender/streaming/streamer.hpp"
 #include "sender/streaming/window.hpp"
@@ -99,6 +100,8 @@ class Session {
   void obey(Instant now, const Jog& command);
   void obey(Instant now, const CancelJog& command);
   void obey(Instant now, const SoftReset& command);
+  void obey(Instant now, const ChangeSettings& command);
+  void obey(Instant now, const RecallSettings& command);
   [[nodiscard]] std::optional<Refused> why_no_line(std::string_view text) const;
   [[nodiscard]] std::optional<Refused> why_no_job() const;
   [[nodiscard]] std::size_t longest_line_taken() const;
@@ -109,6 +112,10 @@ class Session {
   void follow_job(Instant now);
   void obey_handshake(Instant now, const machine::HandshakeOrder& order);
   void obey_job(Instant now, job::JobOrder order);
+  void follow_settings(Instant now);
+  void on_operator_line_accepted(Instant now, std::string_view text);
+  void tell_drift();
+  [[nodiscard]] std::vector<std::string> settings_queries() const;
   void pump(Instant now);
   void poll(Instant now);
   void reset_controller(Instant now);
@@ -116,6 +123,7 @@ class Session {
   void tell(Event event) { outbox_.events.push_back(std::move(event)); }
   void send_byte(vocabulary::Realtime byte) { outbox_.realtime += static_cast<char>(byte); }
   [[nodiscard]] bool is_ready() const { return phase() == SessionPhase::Ready; }
+  [[nodiscard]] bool changes_settings() const { return settings_change_ && !settings_change_->is_over(); }
   [[nodiscard]] bool has_job() const { return job_ && !job::is_final(job_->state().phase); }
 
   SessionOptions options_;
@@ -128,6 +136,9 @@ class Session {
   StatusPoller poller_;
   std::optional<job::Job> job_;
   std::optional<job::JobState> job_state_;
+  std::optional<SettingsChange> settings_change_;
+  /// What the machine had at the last connection, until it was compared.
+  std::optional<RecallSettings> recalled_;
   /// A soft reset is out and its welcome has not come; until then answers mean nothing (protocol.md 4.4).
   std::optional<Instant> reset_pending_until_;
 };

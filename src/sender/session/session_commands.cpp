@@ -43,6 +43,7 @@ std::optional<Refused> Session::why_no_job() const {
   if (!is_ready()) return Refused::NotIdentified;
   if (snapshot().pendant_in_control) return Refused::PendantInControl;
   if (has_job()) return Refused::JobUnderWay;
+  if (changes_settings()) return Refused::SettingsUnderWay;
   if (snapshot().state == MachineState::Alarm) return Refused::MachineInAlarm;
   const bool idle = snapshot().state == MachineState::Idle || snapshot().state == MachineState::Check;
   if (!idle || !snapshot().controller_file.empty()) return Refused::MachineNotIdle;
@@ -106,6 +107,7 @@ std::optional<Refused> Session::why_no_line(std::string_view text) const {
   if (!is_ready()) return Refused::NotIdentified;
   if (snapshot().pendant_in_control) return Refused::PendantInControl;
   if (has_job()) return Refused::JobUnderWay;
+  if (changes_settings()) return Refused::SettingsUnderWay;
   if (snapshot().reset_required) return Refused::MachineInAlarm;
   if (holds_realtime_bytes(text)) return Refused::RealtimeInLine;
   if (crashes_controller(text)) return Refused::NeverSent;

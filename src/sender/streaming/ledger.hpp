@@ -21,8 +21,9 @@ enum class Purpose {
   ClearLatch,  ///< an empty line
   Operator,    ///< sent by hand
   Question,    ///< asked by Kerf itself
+  Setting,     ///< part of a change of settings
 };
-BOOST_DESCRIBE_ENUM(Purpose, JobLine, JobSync, ClearLatch, Operator, Question)
+BOOST_DESCRIBE_ENUM(Purpose, JobLine, JobSync, ClearLatch, Operator, Question, Setting)
 
 /// A line on its way. `bytes` counts what lies in the controller's buffer: text and line end.
 struct OwedLine {
