@@ -47,6 +47,26 @@ struct DescribeOptions {
 };
 [[nodiscard]] ExitStatus describe_machine(const DescribeOptions& options);
 
+/// `kerf settings COMMAND`. `sets` are files, `@NUMBER` of the history, or `now` for the machine as it is.
+struct SettingsOptions {
+  std::string machine = kDefaultMachine;
+  bool json = false;
+  std::vector<std::string> items;  ///< `get`: ids; `set`: `ID=VALUE`
+  std::vector<std::string> sets;
+  std::string group;
+  std::string reason;
+  bool verbose = false;
+  bool dry_run = false;
+  bool force = false;
+};
+[[nodiscard]] ExitStatus list_settings(const SettingsOptions& options);
+[[nodiscard]] ExitStatus get_settings(const SettingsOptions& options);
+[[nodiscard]] ExitStatus set_settings(const SettingsOptions& options);
+[[nodiscard]] ExitStatus diff_settings(const SettingsOptions& options);
+[[nodiscard]] ExitStatus save_settings(const SettingsOptions& options);
+[[nodiscard]] ExitStatus restore_settings(const SettingsOptions& options);
+[[nodiscard]] ExitStatus list_settings_history(const SettingsOptions& options);
+
 struct ConsoleOptions {
   std::string machine = kDefaultMachine;
 };

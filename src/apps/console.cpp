@@ -2,9 +2,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <deque>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +18,7 @@
 #include "apps/terminal.hpp"
 #include "common/base/text.hpp"
 #include "io/session_host.hpp"
+#include "io/state_folder.hpp"
 
 namespace kerf::apps {
 namespace {
@@ -30,21 +29,10 @@ using vocabulary::MachineState;
 /// After the last line of a pipe the console waits this long for something more to come.
 constexpr Duration kLastWords = 300ms;
 
-/// $XDG_STATE_HOME/kerf/console_history, or the usual place; empty without a home.
+/// In the state folder; empty without one.
 std::string history_file() {
-  namespace fs = std::filesystem;
-  const auto variable = [](const char* name) {
-    const char* value = std::getenv(name);
-    return std::string(value == nullptr ? "" : value);
-  };
-  fs::path folder = variable("XDG_STATE_HOME");
-  if (folder.empty()) {
-    if (variable("HOME").empty()) return {};
-    folder = fs::path(variable("HOME")) / ".local" / "state";
-  }
-  std::error_code fault;
-  fs::create_directories(folder / "kerf", fault);
-  return fault ? std::string() : (folder / "kerf" / "console_history").string();
+  const std::string folder = io::state_folder();
+  return folder.empty() ? std::string() : folder + "/console_history";
 }
 
 class Console {
@@ -84,6 +72,7 @@ class Console {
     if (failed.failure != session::HandshakeFailure::LinkLost) fail(failed.sentence, ExitStatus::NoConnection);
   }
   void on(const session::CommandRefused& refused) { show(refused.sentence); }
+  void on(const session::SettingsDrifted& drift) { show(drift.sentence); }
   void on(const session::LinkSilent& silent) {
     show(fmt::format("The machine has not answered for {:.0f} s: check cable and power.", silent.silent_for_s));
   }

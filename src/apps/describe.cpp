@@ -1,29 +1,22 @@
 // `kerf info`: what a controller is and can do, as it tells itself.
 
-#include <array>
-#include <chrono>
-#include <csignal>
-#include <cstdio>
-#include <optional>
 #include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "apps/commands.hpp"
+#include "apps/inquiry.hpp"
 #include "apps/output.hpp"
+#include "apps/setting_text.hpp"
 #include "io/json.hpp"
-#include "io/session_host.hpp"
+#include "sender/machine/setting_value.hpp"
 
 namespace kerf::apps {
 namespace {
 
 using machine::Capabilities;
 using machine::FactSource;
-using namespace std::chrono_literals;
-
-/// A machine that is busy with something else is not waited for longer than this.
-constexpr Duration kBusyLimit = 5s;
 
 std::string_view source_text(FactSource source) {
   switch (source) {
@@ -38,6 +31,53 @@ void print_row(std::string_view name, std::string_view value) {
   if (!value.empty()) put("  {:<14} {}\n", name, value);
 }
 
+std::string feature_text(const machine::FeatureFact& fact) {
+  if (!fact.available) return {};
+  return fmt::format("{}{}", *fact.available ? "yes" : "no", source_text(fact.source));
+}
+
+std::string homing_text(const machine::HomingFact& homing) {
+  if (!homing.enabled) return {};
+  std::string text = *homing.enabled ? "on" : "off";
+  if (homing.required_at_start.value_or(false)) text += ", needed at start";
+  if (!homing.phases.empty()) text += fmt::format(", {} in turn", fmt::join(homing.phases, " then "));
+  return text;
+}
+
+std::string tool_change_text(const machine::ToolChangeFact& change) {
+  using machine::ToolChangeKind;
+  const std::string mode = change.mode.empty() ? "" : " (" + change.mode + ")";
+  switch (change.kind) {
+    case ToolChangeKind::Unknown: return {};
+    case ToolChangeKind::None: return "M6 is refused" + std::string{source_text(change.source)};
+    case ToolChangeKind::Ignored: return "M6 is ignored" + std::string{source_text(change.source)};
+    case ToolChangeKind::Manual: return "by hand" + mode;
+    case ToolChangeKind::Changer: return "a tool changer" + mode;
+  }
+  return {};
+}
+
+void print_features(const Capabilities& machine) {
+  const machine::Features& features = machine.features;
+  print_row("Mode", features.mode.word + std::string{source_text(features.mode.source)});
+  print_row("Reports in", features.report_units.word + std::string{source_text(features.report_units.source)});
+  for (const machine::SpindleFact& spindle : machine.spindles) {
+    const std::string range =
+        spindle.max_rpm ? fmt::format(", {} to {} rpm", spindle.min_rpm.value_or(0), *spindle.max_rpm) : "";
+    print_row("Spindle", fmt::format("{} {}{}", spindle.id, spindle.name, range));
+  }
+  print_row("Homing", homing_text(features.homing));
+  print_row("Soft limits", feature_text(features.soft_limits));
+  print_row("Hard limits", feature_text(features.hard_limits));
+  print_row("Probe", feature_text(features.probe));
+  print_row("Tool change", tool_change_text(features.tool_change));
+  print_row("SD card", feature_text(features.sd_card));
+  print_row("Pendant", feature_text(features.pendant));
+  for (const machine::NetworkPortFact& port : features.network) {
+    print_row("Network", fmt::format("{} at port {}{}", port.service, port.port, source_text(port.source)));
+  }
+}
+
 void print_codes(std::string_view title, const std::vector<machine::CodeFact>& codes) {
   if (codes.empty()) return;
   put("\n{} ({})\n", title, codes.size());
@@ -46,15 +86,6 @@ void print_codes(std::string_view title, const std::vector<machine::CodeFact>& c
     const bool is_repeated = code.text.starts_with(code.title);
     const std::string meaning = is_repeated ? code.text : code.title + (code.text.empty() ? "" : ": ") + code.text;
     if (!meaning.empty()) put("  {:>3}  {}\n", code.id, meaning);
-  }
-}
-
-void print_settings(const std::vector<machine::SettingFact>& settings) {
-  if (settings.empty()) return;
-  put("\nSettings ({})\n", settings.size());
-  for (const machine::SettingFact& setting : settings) {
-    const std::string unit = setting.unit.empty() ? "" : " " + setting.unit;
-    put("  {:<22} {}\n", fmt::format("${}={}{}", setting.id, setting.value.value_or(""), unit), setting.name);
   }
 }
 
@@ -75,83 +106,30 @@ void print_text(const Capabilities& machine) {
   if (machine.tools) print_row("Tools", fmt::format("{}", *machine.tools));
   print_row("Options", machine.options);
   print_row("Capabilities", fmt::format("{}", fmt::join(machine.capabilities, " ")));
+  print_features(machine);
   for (const machine::BuildFact& row : machine.build_rows) print_row(row.key, row.value);
   print_codes("Alarms", machine.alarms);
   print_codes("Errors", machine.errors);
-  print_settings(machine.settings);
+  if (!machine.settings.empty()) put("\nSettings ({})\n", machine.settings.size());
+  print_settings(machine, machine.settings, false);
   if (!machine.complete) put("\nThe machine left a question unanswered, so this may not be everything.\n");
 }
-
-/// Connects, waits until the session knows the controller, and leaves it as it was.
-class Inquiry {
- public:
-  Inquiry(io::EventLoop& loop, io::MachineUrl url) : loop_(loop), url_(std::move(url)), limit_(loop) {}
-
-  std::optional<Capabilities> run() {
-    session::SessionOptions options;
-    options.reset_policy = session::ResetPolicy::WhenSilent;  // somebody's modal state must survive a question
-    host_ = std::make_unique<io::SessionHost>(
-        loop_, url_, options,
-        io::SessionHost::Callbacks{
-            .event = [this](const session::Event& event) { on_event(event); },
-            .lost = [this](const io::TransportError& error) { fail(io::explain(url_, error)); }});
-    loop_.run();
-    return found_;
-  }
-
- private:
-  void on_event(const session::Event& event) {
-    if (std::holds_alternative<session::ControllerFound>(event)) {
-      found_ = host_->session().capabilities();
-      loop_.stop();
-    } else if (const auto* failed = std::get_if<session::HandshakeFailed>(&event)) {
-      // The link itself says better what became of it.
-      if (failed->failure != session::HandshakeFailure::LinkLost) fail(failed->sentence);
-    } else if (const auto* busy = std::get_if<session::ControllerBusy>(&event)) {
-      limit_.arm(loop_.now() + kBusyLimit,
-                 [this, sentence = busy->sentence] { fail(sentence + " Ask again when the machine is idle."); });
-    }
-  }
-
-  void fail(const std::string& sentence) {
-    if (!found_ && !complained_) complain(sentence);
-    complained_ = true;
-    loop_.stop();
-  }
-
-  io::EventLoop& loop_;
-  const io::MachineUrl url_;
-  io::Timer limit_;
-  std::optional<Capabilities> found_;
-  bool complained_ = false;
-  std::unique_ptr<io::SessionHost> host_;
-};
 
 }  // namespace
 
 ExitStatus describe_machine(const DescribeOptions& options) {
-  const auto url = io::parse_machine_url(options.machine);
-  if (!url) {
-    complain(io::explain(url.error()));
-    return ExitStatus::Usage;
-  }
-  io::EventLoop loop;
-  bool interrupted = false;
-  constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
-  const io::SignalWatch signals(loop, kSignals, [&](int) {
-    interrupted = true;
-    loop.stop();
+  return visit(options.machine, {}, [&](const io::SessionHost& host) {
+    const Capabilities found = machine::without_passwords(host.session().capabilities());
+    const auto& drift = host.session().settings_drift();
+    if (options.json) {
+      io::Json json = io::to_json(found);
+      json["settings_drift"] = io::to_json(drift);
+      put("{}\n", io::print(json, 2));
+      return;
+    }
+    print_text(found);
+    if (!drift.empty()) put("\n{}\n", session::drift_sentence(drift, {}));
   });
-  Inquiry inquiry(loop, *url);
-  const auto found = inquiry.run();
-  if (interrupted) return ExitStatus::Interrupted;
-  if (!found) return ExitStatus::NoConnection;
-  if (options.json) {
-    put("{}\n", io::print(io::to_json(*found), 2));
-  } else {
-    print_text(*found);
-  }
-  return ExitStatus::Done;
 }
 
 }  // namespace kerf::apps

@@ -177,6 +177,61 @@ void add_ports(CLI::App& kerf, Chosen& chosen) {
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::list_ports(*options); }; });
 }
 
+using SettingsCommand = ExitStatus (*)(const kerf::apps::SettingsOptions&);
+
+/// One of the sub-commands of `kerf settings`.
+CLI::App& add_settings_command(CLI::App& settings, Chosen& chosen, std::shared_ptr<kerf::apps::SettingsOptions> options,
+                               const char* name, const char* help, SettingsCommand run) {
+  CLI::App* command = settings.add_subcommand(name, help);
+  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  command->add_flag("--json", options->json, "Print JSON");
+  command->footer("");
+  command->callback([&chosen, options, run] { chosen = [options, run] { return run(*options); }; });
+  return *command;
+}
+
+constexpr const char* kSetHelp = "A file, @NUMBER of the history, or now: what the machine has";
+
+void add_settings_changes(CLI::App& settings, Chosen& chosen,
+                          const std::shared_ptr<kerf::apps::SettingsOptions>& options) {
+  CLI::App& set = add_settings_command(settings, chosen, options, "set", "Change settings: checked, written, read back",
+                                       kerf::apps::set_settings);
+  set.add_option("ID=VALUE", options->items, "Such as 110=600, 22=+Allow manual, 23=XZ, 13=off")
+      ->required()
+      ->type_name("");
+  CLI::App& restore = add_settings_command(settings, chosen, options, "restore", "Put a set back: all of it or nothing",
+                                           kerf::apps::restore_settings);
+  restore.add_option("SET", options->sets, kSetHelp)->required()->expected(1)->type_name("");
+  restore.add_flag("--force", options->force, "Even if the set is of another firmware");
+  for (CLI::App* command : {&set, &restore}) {
+    command->add_option("--reason", options->reason, "Why, for the history")->type_name("TEXT");
+    command->add_flag("-n,--dry-run", options->dry_run, "Only say what would change");
+  }
+}
+
+void add_settings(CLI::App& kerf, Chosen& chosen) {
+  using namespace kerf::apps;
+  auto options = std::make_shared<SettingsOptions>();
+  CLI::App* settings = kerf.add_subcommand("settings", "Show, change, save and restore a machine's settings");
+  settings->require_subcommand(1);
+  settings->footer("\nEvery set that a machine was seen with is kept: 'kerf settings history' lists them.\n");
+  CLI::App& list = add_settings_command(*settings, chosen, options, "list", "All settings, by group", list_settings);
+  list.add_option("-g,--group", options->group, "Only this group, by name or number")->type_name("NAME");
+  list.add_flag("-v,--verbose", options->verbose, "Also what each takes and does");
+  CLI::App& get =
+      add_settings_command(*settings, chosen, options, "get", "Everything about some settings", get_settings);
+  get.add_option("ID", options->items, "Such as 110 or Homing/Enable")->required()->type_name("");
+  add_settings_changes(*settings, chosen, options);
+  CLI::App& diff =
+      add_settings_command(*settings, chosen, options, "diff", "What differs between two sets", diff_settings);
+  diff.add_option("SET", options->sets, kSetHelp)->required()->expected(1, 2)->type_name("");
+  CLI::App& save =
+      add_settings_command(*settings, chosen, options, "save", "Write the settings into a file", save_settings);
+  save.add_option("FILE", options->sets, "The file; - is standard output")->required()->expected(1)->type_name("");
+  add_settings_command(*settings, chosen, options, "history", "What the machine was seen with, and when",
+                       list_settings_history);
+}
+
 void add_verify(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::VerifyOptions>();
   CLI::App* command = kerf.add_subcommand("verify", "Hold recorded conversations (.talk files) with a controller");
@@ -278,6 +333,7 @@ int start(int argc, char** argv) {
   add_virtual(kerf, chosen);
   add_describe(kerf, chosen);
   add_console(kerf, chosen);
+  add_settings(kerf, chosen);
   add_ports(kerf, chosen);
   add_verify(kerf, chosen);
   add_conform(kerf, chosen);

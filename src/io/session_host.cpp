@@ -27,6 +27,7 @@ SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::Sessio
     : loop_(loop),
       session_(with_traits_of(url, options)),
       callbacks_(std::move(callbacks)),
+      keeper_(url),
       timer_(loop),
       transport_(open_transport(loop, url,
                                 {.opened =
@@ -63,7 +64,10 @@ void SessionHost::settle() {
   for (session::Outbox outbox = session_.take_outbox(); !outbox.empty(); outbox = session_.take_outbox()) {
     if (!outbox.realtime.empty()) transport_->write_realtime(outbox.realtime);
     if (!outbox.lines.empty()) transport_->write_lines(outbox.lines);
-    for (const session::Event& event : outbox.events) callbacks_.event(event);
+    for (const session::Event& event : outbox.events) {
+      if (const auto command = keeper_.on_event(event, session_)) session_.submit(loop_.now(), *command);
+      callbacks_.event(event);
+    }
   }
   is_settling_ = false;
   timer_.arm(session_.next_deadline(), [this] {

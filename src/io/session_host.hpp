@@ -6,6 +6,7 @@
 
 #include "io/event_loop.hpp"
 #include "io/machine_url.hpp"
+#include "io/settings_keeper.hpp"
 #include "io/transport.hpp"
 #include "sender/session/session.hpp"
 
@@ -35,6 +36,7 @@ class SessionHost {
   EventLoop& loop_;
   session::Session session_;
   Callbacks callbacks_;
+  SettingsKeeper keeper_;
   Timer timer_;
   std::unique_ptr<Transport> transport_;
   bool is_open_ = false;

@@ -242,6 +242,8 @@ class LiveTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="kerf-live-")
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
+        # What one test's machines were seen with is nothing to another's.
+        os.environ["XDG_STATE_HOME"] = os.path.join(self.folder, "state-home")
 
     def file(self, name, content):
         path = os.path.join(self.folder, name)

@@ -55,8 +55,9 @@ std::string_view type_name(int type) {
 
 const SettingFact* Capabilities::find_setting(std::string_view id) const {
   const auto find = [this](std::string_view key) {
-    const auto same = [key](const SettingFact& setting) { return base::iequals(setting.id, key); };
-    const auto found = std::ranges::find_if(settings, same);
+    auto found = std::ranges::find(settings, key, &SettingFact::id);
+    const auto alike = [key](const SettingFact& setting) { return base::iequals(setting.id, key); };
+    if (found == settings.end()) found = std::ranges::find_if(settings, alike);
     return found == settings.end() ? nullptr : &*found;
   };
   if (const SettingFact* setting = find(id)) return setting;

@@ -27,22 +27,6 @@ bool is_work_coordinate_system(std::string_view word) {
   return word.size() >= 3 && word[0] == 'G' && word[1] == '5' && word[2] >= '4' && word[2] <= '9';
 }
 
-constexpr int kReportMask = 10;
-constexpr int kReportInches = 13;
-
-struct Assignment {
-  std::string_view id;
-  std::string_view value;
-};
-
-// $13=1
-std::optional<Assignment> assignment_in(std::string_view line) {
-  const std::string_view text = base::trim(line);
-  const auto equals = text.find('=');
-  if (!text.starts_with('$') || equals == std::string_view::npos) return std::nullopt;
-  return Assignment{.id = base::trim(text.substr(1, equals - 1)), .value = text.substr(equals + 1)};
-}
-
 }  // namespace
 
 void MachineModel::fold(Instant now, const protocol::Message& message) {
@@ -83,7 +67,6 @@ void MachineModel::fold_report(Instant now, const protocol::StatusReport& report
 
 // `<Idle|WPos:1.000,0.000,0.000|FS:0,0|WCO:-1.000,0.000,0.000>`
 void MachineModel::fold_position(const protocol::StatusReport& report) {
-  if (units_in_doubt_) return;
   if (report.work_offset) snapshot_.work_offset_mm = in_mm(*report.work_offset);
   if (report.machine_position) {
     snapshot_.machine_position_mm = in_mm(*report.machine_position);
@@ -104,7 +87,7 @@ void MachineModel::fold_optional_fields(const protocol::StatusReport& report) {
   }
   snapshot_.line_number.reset();
   if (report.line_number) snapshot_.line_number = *report.line_number;
-  if (report.feed_mm_per_min && !units_in_doubt_) snapshot_.feed_mm_per_min = *report.feed_mm_per_min * scale();
+  if (report.feed_mm_per_min) snapshot_.feed_mm_per_min = *report.feed_mm_per_min * scale();
   if (report.spindle_rpm) snapshot_.spindle_rpm = report.spindle_rpm;
   if (report.measured_rpm) snapshot_.measured_rpm = report.measured_rpm;
   snapshot_.pins = report.pins.value_or("");
@@ -175,31 +158,12 @@ void MachineModel::fold_welcome() {
   snapshot_.line_number.reset();
 }
 
-/// The number of a setting, also of one that Rabbit names ("Report/Inches" is 13).
-int MachineModel::number_of_setting(std::string_view id) const {
-  const auto match = vocabulary::find_setting(dialect_->settings, id);
-  return match ? match->row->id + match->axis : base::parse_int(id).value_or(-1);
-}
-
 void MachineModel::fold_setting(std::string_view id, std::string_view value) {
-  const int number = number_of_setting(id);
-  if (number == kReportMask && report_mask_ != value) {
-    // An offset that is not told any more would be taken for the present one (protocol.md 3.5).
-    if (!report_mask_.empty()) snapshot_.work_offset_mm.reset();
-    if (!report_mask_.empty()) snapshot_.work_position_mm.reset();
-    report_mask_ = value;
-  }
-  if (number != kReportInches) return;
+  if (id != "13") return;
   const bool inches = base::parse_decimal(base::trim(value)).value_or(0) != 0;
-  const bool changes = inches != snapshot_.reports_inches;
-  units_in_doubt_ = false;
-  snapshot_.units_told = true;
+  if (inches == snapshot_.reports_inches) return;
   snapshot_.reports_inches = inches;
-  if (changes) forget_positions();
-}
-
-/// What was converted under the other assumption is not known any more.
-void MachineModel::forget_positions() {
+  // What was converted under the other assumption is not known any more.
   snapshot_.machine_position_mm.reset();
   snapshot_.work_position_mm.reset();
   snapshot_.work_offset_mm.reset();
@@ -223,23 +187,11 @@ void MachineModel::keep_message(std::string_view text) {
   if (snapshot_.messages.size() > kMessagesKept) snapshot_.messages.erase(snapshot_.messages.begin());
 }
 
-void MachineModel::on_line_sent(std::string_view line) {
-  const auto setting = assignment_in(line);
-  // Defaults may have other units; Rabbit restores them without a reset (protocol.md 7.1).
-  const bool restores = setting && base::iequals(setting->id, "RST");
-  if (!setting || (!restores && number_of_setting(setting->id) != kReportInches)) return;
-  units_in_doubt_ = true;
-  forget_positions();
-}
-
-void MachineModel::on_line_answered(std::string_view line, bool accepted) {
-  const auto setting = assignment_in(line);
-  if (!setting) return;
-  const bool concerns_units = base::iequals(setting->id, "RST") || number_of_setting(setting->id) == kReportInches;
-  if (accepted)
-    fold_setting(setting->id, setting->value);
-  else if (concerns_units)
-    units_in_doubt_ = false;
+void MachineModel::on_line_accepted(std::string_view line) {
+  const std::string_view text = base::trim(line);
+  const auto equals = text.find('=');
+  if (!text.starts_with('$') || equals == std::string_view::npos) return;
+  fold_setting(base::trim(text.substr(1, equals - 1)), text.substr(equals + 1));
 }
 
 }  // namespace kerf::machine

@@ -1,7 +1,6 @@
 #pragma once
 // Folds what a controller says into one Snapshot. Makes no decisions.
 
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,18 +19,10 @@ class MachineModel {
   void speak(const vocabulary::Dialect& dialect) { dialect_ = &dialect; }
 
   void fold(Instant now, const protocol::Message& message);
-  /// A line left that may change the units of reports: until it is answered, no position is believed.
-  void on_line_sent(std::string_view line);
-  /// A line was answered: `$13=1` changes the units of all reports after it, if it was accepted.
-  void on_line_answered(std::string_view line, bool accepted);
-  /// False while a change of `$13` is on its way, or was lost.
-  [[nodiscard]] bool knows_units() const { return !units_in_doubt_; }
+  /// A line was answered with ok: `$13=1` changes the units of all reports after it.
+  void on_line_accepted(std::string_view line);
   /// The link is gone: nothing is known any more.
-  void forget() {
-    snapshot_ = {};
-    units_in_doubt_ = false;
-    report_mask_.clear();
-  }
+  void forget() { snapshot_ = {}; }
 
   [[nodiscard]] const Snapshot& snapshot() const { return snapshot_; }
 
@@ -44,17 +35,12 @@ class MachineModel {
   void fold_parser_state(const protocol::ParserState& state);
   void fold_welcome();
   void fold_setting(std::string_view id, std::string_view value);
-  [[nodiscard]] int number_of_setting(std::string_view id) const;
-  void forget_positions();
   void raise_alarm(int code);
   void keep_message(std::string_view text);
   [[nodiscard]] std::vector<double> in_mm(std::vector<double> values) const;
   [[nodiscard]] double scale() const { return snapshot_.reports_inches ? 25.4 : 1.0; }
 
   Snapshot snapshot_;
-  bool units_in_doubt_ = false;
-  /// `$10` as last told.
-  std::string report_mask_;
   const vocabulary::Dialect* dialect_ = &vocabulary::dialect_of(vocabulary::Firmware::Unknown);
 };
 

@@ -49,7 +49,7 @@ TEST_F(MachineModelTest, InchesBecomeMillimetres) {
   hear("<Idle|MPos:1.0000,0.0000,0.0000|FS:10.0,0|WCO:0.0000,0.0000,0.0000>");
   EXPECT_THAT(known().machine_position_mm, Optional(ElementsAre(DoubleNear(25.4, 1e-9), 0, 0)));
   EXPECT_THAT(known().feed_mm_per_min, Optional(DoubleNear(254, 1e-9)));
-  model_.on_line_answered("$13 = 0", true);
+  model_.on_line_accepted("$13 = 0");
   EXPECT_FALSE(known().reports_inches);
 }
 

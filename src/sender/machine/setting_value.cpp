@@ -124,8 +124,8 @@ std::optional<std::size_t> find_item(const std::vector<std::string>& items, std:
 
 Checked check_choice(const SettingFact& setting, std::string_view text, const SettingRules& rules) {
   const auto items = items_of(setting, rules);
-  if (const auto item = find_item(items, text)) return std::to_string(*item);
-  const auto number = base::parse_int<std::size_t>(text);
+  auto number = base::parse_int<std::size_t>(text);
+  if (!number) number = find_item(items, text);
   const bool exists = number && (items.empty() || *number < items.size());
   if (!exists) return refuse(setting, SettingFault::UnknownItem, text, rules);
   return std::to_string(*number);
@@ -196,9 +196,6 @@ Checked check_address(const SettingFact& setting, std::string_view text, const S
 }
 
 Checked check_text(const SettingFact& setting, std::string_view text, const SettingRules& rules) {
-  if (is_password(setting) && text == kStars) {
-    return refuse_because(setting, SettingFault::NotStored, "the password itself is not known, only stars: give it.");
-  }
   const auto length = static_cast<double>(text.size());
   if (text.empty() && setting.allow_null) return std::string{};
   if (const auto least = limit(setting.min); least && length < *least) {
@@ -355,7 +352,7 @@ bool is_same_value(const SettingFact& setting, std::string_view left, std::strin
   if (type == SettingType::Radio) {
     const auto items = items_of(setting, {});
     const auto index = [&](std::string_view text) {
-      return find_item(items, text).value_or(base::parse_int<std::size_t>(text).value_or(items.size()));
+      return base::parse_int<std::size_t>(text).value_or(find_item(items, text).value_or(items.size()));
     };
     return index(left) == index(right) && index(left) < items.size();
   }

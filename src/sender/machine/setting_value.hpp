@@ -29,12 +29,11 @@ enum class SettingFault {
   RealtimeCharacter,  ///< `?`, `!` or `~`, which the controller would obey at once
   NotPrintable,       ///< not plain ASCII
   NeedsOther,         ///< another setting must be on first
-  NotStored,          ///< a password that is shown as stars
   NotTaken,           ///< sent, and the controller refused or altered it
 };
 BOOST_DESCRIBE_ENUM(SettingFault, UnknownSetting, Empty, NotANumber, NotWhole, Negative, TooSmall, TooLarge, TooShort,
                     TooLong, UnknownItem, UnknownAxis, NotAnAddress, RealtimeCharacter, NotPrintable, NeedsOther,
-                    NotStored, NotTaken)
+                    NotTaken)
 
 /// A value that is not sent; the sentence says which setting, what was given and what is allowed.
 struct SettingRefusal {

@@ -81,8 +81,6 @@ struct Snapshot {
   bool reset_required = false;
   /// Positions are reported in inches (`$13=1`); Kerf has already converted them.
   bool reports_inches = false;
-  /// The controller told which units its reports have; until then millimetres are assumed.
-  bool units_told = false;
 
   /// Last messages for the operator, newest last, at most kMessagesKept.
   std::vector<std::string> messages;
@@ -101,8 +99,7 @@ BOOST_DESCRIBE_STRUCT(Snapshot, (),
                        rx_bytes_free, line_number, feed_mm_per_min, spindle_rpm, measured_rpm, pins, overrides,
                        accessories, work_coordinate_system, tool, homed, homed_axes, pendant_in_control,
                        controller_file, auto_report_ms, parser_words, offsets_mm, tool_length_offset_mm, probe,
-                       alarm_code, reset_required, reports_inches, units_told, messages, other_fields, reported_at,
-                       reports))
+                       alarm_code, reset_required, reports_inches, messages, other_fields, reported_at, reports))
 
 inline constexpr std::size_t kMessagesKept = 20;
 

@@ -84,8 +84,8 @@ using Command = std::variant<StartJob, HoldJob, ResumeJob, StopJob, AbortJob, Se
 
 /// The names under which commands are written down, in the order of the variant.
 inline constexpr std::array<std::string_view, std::variant_size_v<Command>> kCommandNames{
-    "StartJob",     "HoldJob", "ResumeJob", "StopJob", "AbortJob",  "SendLine",
-    "SendRealtime", "Unlock",  "Home",      "Jog",     "CancelJog", "SoftReset",
+    "StartJob", "HoldJob", "ResumeJob", "StopJob",   "AbortJob",  "SendLine",       "SendRealtime",
+    "Unlock",   "Home",    "Jog",       "CancelJog", "SoftReset", "ChangeSettings", "RecallSettings",
 };
 static_assert(!kCommandNames.back().empty(), "name the new command here, in the order of the variant");
 
@@ -102,6 +102,8 @@ BOOST_DESCRIBE_STRUCT(Home, (), ())
 BOOST_DESCRIBE_STRUCT(Jog, (), (words))
 BOOST_DESCRIBE_STRUCT(CancelJog, (), ())
 BOOST_DESCRIBE_STRUCT(SoftReset, (), ())
+BOOST_DESCRIBE_STRUCT(ChangeSettings, (), (settings, reason))
+BOOST_DESCRIBE_STRUCT(RecallSettings, (), (settings, since))
 
 /// Why a command was not obeyed.
 enum class Refused {

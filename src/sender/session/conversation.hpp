@@ -19,6 +19,8 @@ namespace kerf::session {
 /// Answers whole lines from a table and realtime bytes from a few strings. A line that is not in the table gets `ok`.
 struct ReplyTable {
   std::map<std::string, std::string, std::less<>> lines;
+  /// A memory of settings: `$n=value` changes it, `$n` and `$$` tell it. Empty: only `lines` counts.
+  std::map<std::string, std::string> settings{};
   std::string status = "<Idle|MPos:0.000,0.000,0.000|FS:0,0|WCO:0.000,0.000,0.000>\r\n";
   /// Answer to 0x87; empty: the byte is dropped.
   std::string full_status;
@@ -33,10 +35,27 @@ struct ReplyTable {
     if (byte == '\x18') return welcome;
     return {};
   }
-  [[nodiscard]] std::string reply_to_line(const std::string& line) const {
+  [[nodiscard]] std::string reply_to_line(const std::string& line) {
     if (!answers_lines) return {};
     const auto found = lines.find(line);
+    const bool is_about_settings = !settings.empty() && line.starts_with('$');
+    if (is_about_settings && (found == lines.end() || line == "$$")) return reply_about_settings(line);
     return found == lines.end() ? "ok\r\n" : found->second;
+  }
+
+  // $110=500.000
+  [[nodiscard]] std::string reply_about_settings(const std::string& line) {
+    const auto equals = line.find('=');
+    const std::string id = line.substr(1, equals - 1);
+    if (equals != std::string::npos) {
+      if (settings.contains(id)) settings[id] = line.substr(equals + 1);
+      return "ok\r\n";
+    }
+    std::string reply;
+    for (const auto& [known, value] : settings) {
+      if (line == "$$" || known == id) reply += "$" + known + "=" + value + "\r\n";
+    }
+    return reply + "ok\r\n";
   }
 };
 

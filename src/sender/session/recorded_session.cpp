@@ -15,7 +15,14 @@ template <typename T>
 void mask_texts(T& command, PasswordMask& mask) {
   boost::mp11::mp_for_each<boost::describe::describe_members<T, boost::describe::mod_public>>([&](auto member) {
     auto& value = command.*member.pointer;
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, std::string>) value = mask.masked_line(value);
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::string>) value = mask.masked_line(value);
+    if constexpr (std::is_same_v<Value, std::vector<machine::SettingAssignment>>) {
+      for (machine::SettingAssignment& setting : value) {
+        const std::string front = "$" + setting.id + "=";
+        setting.value = mask.masked_line(front + setting.value).substr(front.size());
+      }
+    }
   });
 }
 

@@ -54,6 +54,7 @@ void Session::on_open(Instant now) {
   poller_.stop();
   settings_change_.reset();
   recalled_.reset();
+  settings_drift_.clear();
   handshake_.on_open(now);
   settle_everything(now);
 }
@@ -108,7 +109,7 @@ void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
 
 void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code) {
   if (!line) return;
-  model_.on_line_answered(line->text, error_code == 0);
+  if (error_code == 0) model_.on_line_accepted(line->text);
   std::string meaning;
   if (error_code != 0) {
     const auto& known = handshake_.collector();
@@ -167,8 +168,7 @@ void Session::on_welcome(Instant now) {
   if (!is_ready()) return;
   tell(ControllerRestarted{.asked = asked});
   poller_.stop();
-  // Where it is not known in which units reports are, everything is asked for again.
-  handshake_.restart(now, asked && model_.knows_units());
+  handshake_.restart(now, asked);
 }
 
 void Session::on_alarm(Instant now, int code) {
@@ -275,7 +275,6 @@ void Session::obey_job(Instant now, job::JobOrder order) {
 void Session::pump(Instant now) {
   if (!open_ || snapshot().pendant_in_control) return;
   for (auto& line : streamer_.pump(now, outbox_.lines)) {
-    model_.on_line_sent(line.text);
     tell(LineSent{.purpose = line.purpose, .file_line = line.file_line, .text = std::move(line.text)});
   }
 }

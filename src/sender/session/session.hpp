@@ -76,6 +76,8 @@ class Session {
   [[nodiscard]] const machine::Capabilities& capabilities() const { return handshake_.capabilities(); }
   /// The job under way, or the last one; empty before the first.
   [[nodiscard]] const std::optional<job::JobState>& job() const { return job_state_; }
+  /// What was not as at the last connection (RecallSettings), for the rest of this one.
+  [[nodiscard]] const std::vector<machine::SettingDifference>& settings_drift() const { return settings_drift_; }
   /// Every line sent, answered and lost so far.
   [[nodiscard]] const streaming::Ledger& ledger() const { return streamer_.ledger(); }
   [[nodiscard]] std::size_t bytes_in_flight() const { return streamer_.ledger().bytes_in_flight(); }
@@ -139,6 +141,7 @@ class Session {
   std::optional<SettingsChange> settings_change_;
   /// What the machine had at the last connection, until it was compared.
   std::optional<RecallSettings> recalled_;
+  std::vector<machine::SettingDifference> settings_drift_;
   /// A soft reset is out and its welcome has not come; until then answers mean nothing (protocol.md 4.4).
   std::optional<Instant> reset_pending_until_;
 };

@@ -73,10 +73,9 @@ void Session::obey(Instant, const RecallSettings& command) {
 void Session::tell_drift() {
   if (!recalled_ || !capabilities().complete) return;
   const RecallSettings recalled = *std::exchange(recalled_, std::nullopt);
-  auto found = machine::differences(capabilities(), recalled.settings, machine::settings_of(capabilities()));
-  if (found.empty()) return;
-  std::string sentence = drift_sentence(found, recalled.since);
-  tell(SettingsDrifted{.differences = std::move(found), .sentence = std::move(sentence)});
+  settings_drift_ = machine::differences(capabilities(), recalled.settings, machine::settings_of(capabilities()));
+  if (settings_drift_.empty()) return;
+  tell(SettingsDrifted{.differences = settings_drift_, .sentence = drift_sentence(settings_drift_, recalled.since)});
 }
 
 /// What Kerf knows follows what was set by hand. Defaults may change everything, units included: all of it is asked for

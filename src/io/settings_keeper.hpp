@@ -1,0 +1,28 @@
+#pragma once
+// Watches a session and keeps every set of settings that its machine had. Belongs to the event loop's thread.
+
+#include <optional>
+#include <string>
+
+#include "io/machine_url.hpp"
+#include "io/settings_archive.hpp"
+#include "sender/session/session.hpp"
+
+namespace kerf::io {
+
+class SettingsKeeper {
+ public:
+  explicit SettingsKeeper(MachineUrl url) : url_(std::move(url)) {}
+
+  /// Told of everything that the session tells. Once it has identified the machine, gives the settings of the last
+  /// connection to compare with.
+  [[nodiscard]] std::optional<session::Command> on_event(const session::Event& event, const session::Session& session);
+
+ private:
+  [[nodiscard]] std::optional<session::Command> on_found(const session::Session& session) const;
+  void keep(const session::Session& session, const std::string& reason) const;
+
+  const MachineUrl url_;
+};
+
+}  // namespace kerf::io
