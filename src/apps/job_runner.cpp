@@ -92,6 +92,10 @@ void JobRunner::on(const session::ControllerBusy& busy) {
   view_.noted(busy.sentence);
 }
 
+void JobRunner::on(const session::SettingsDrifted& drift) {
+  view_.noted(drift.sentence);
+}
+
 void JobRunner::on(const session::HandshakeFailed& failed) {
   // on_lost() says better what became of the link.
   if (failed.failure != session::HandshakeFailure::LinkLost) fail(failed.sentence, ExitStatus::NoConnection);

@@ -46,6 +46,7 @@ class JobRunner {
   void on(const session::JobProgressed& progressed);
   void on(const session::JobEnded& ended);
   void on(const session::CommandRefused& refused);
+  void on(const session::SettingsDrifted& drift);
   void on(const session::LinkSilent& silent);
   void on(const session::LinkAnswering& answering);
   template <typename Other>

@@ -26,13 +26,16 @@ struct Dependency {
 // grblHAL settings.c set_homing_enable, gnea/grbl settings.c: soft limits and clipped jogs need homing; switching
 // homing on copies X's homing rates to all axes; what selects a spindle, an axis' kind or how texts are read comes
 // before what depends on it.
-constexpr auto kAll = FirmwareSet::All;
+constexpr auto kGrblAndHal = FirmwareSet::Grbl | FirmwareSet::GrblHal;
+constexpr auto kRabbit = FirmwareSet::Rabbit;  // takes soft limits without homing
 constexpr auto kHal = FirmwareSet::GrblHal;
 constexpr std::array kDependencies{
-    Dependency{20, 20, 22, true, kAll},  Dependency{40, 40, 22, true, kHal},    Dependency{24, 25, 22, false, kHal},
-    Dependency{44, 49, 22, false, kHal}, Dependency{180, 197, 22, false, kHal}, Dependency{180, 197, 25, false, kHal},
-    Dependency{32, 36, 9, false, kHal},  Dependency{30, 36, 395, false, kHal},  Dependency{100, 139, 376, false, kHal},
-    Dependency{74, 79, 39, false, kHal}, Dependency{300, 336, 39, false, kHal}, Dependency{342, 346, 341, false, kHal},
+    Dependency{20, 20, 22, true, kGrblAndHal}, Dependency{40, 40, 22, true, kHal},
+    Dependency{24, 25, 22, false, kHal},       Dependency{44, 49, 22, false, kHal},
+    Dependency{180, 197, 22, false, kHal},     Dependency{180, 197, 25, false, kHal},
+    Dependency{32, 36, 9, false, kHal},        Dependency{30, 36, 395, false, kHal},
+    Dependency{100, 139, 376, false, kHal},    Dependency{74, 79, 39, false, kHal},
+    Dependency{300, 336, 39, false, kHal},     Dependency{342, 346, 341, false, kHal},
 };
 
 bool concerns(const Dependency& row, int id) {

@@ -52,7 +52,8 @@ TEST(SettingsText, WhatIsPrintedReadsBack) {
                                                   rc::gen::elementOf(std::string{"abcXYZ019.,;:-_()[]<>$%='\"/#"}))});
     }
     const auto back = parse_settings_text(print_settings_text({}, settings, {}));
-    RC_ASSERT(back && *back == settings);
+    RC_ASSERT(back.has_value());
+    RC_ASSERT(*back == settings);
   }));
 }
 
