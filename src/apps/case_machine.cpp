@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "common/base/text.hpp"
+#include "firmware/settings_store.hpp"
 #include "firmware/virtual_controller.hpp"
 #include "io/machine_url.hpp"
 #include "io/text_file.hpp"
@@ -18,6 +19,28 @@ using simulation::CaseMachine;
 using simulation::InjectedByte;
 
 constexpr int kHex = 16;
+
+/// A firmware is told one line after the other, and refuses what does not fit yet: soft limits before homing.
+std::vector<std::string> keep_accepted(CaseMachine& machine, std::string_view text) {
+  std::vector<std::string> refused;
+  auto& kept = machine.stored.settings;
+  firmware::SettingsStore store(machine.personality, firmware::axes_of(machine.personality, machine.stored));
+  kept.clear();
+  for (const std::string_view line : base::split(text, '\n')) {
+    firmware::StoredState told;
+    if (!firmware::apply_settings_text(told, line)) continue;
+    for (const auto& [key, value] : told.settings) {
+      if (store.write(key, value)) {
+        kept.insert_or_assign(key, value);
+      } else {
+        refused.push_back(key);
+      }
+    }
+  }
+  // A later line may have taken them back.
+  if (!store.flag(firmware::setting::kSoftLimits)) kept.erase(std::to_string(firmware::setting::kSoftLimits));
+  return refused;
+}
 
 bool load_settings(CaseMachine& machine, const std::string& file) {
   machine.stored.initialised = true;
@@ -33,8 +56,7 @@ bool load_settings(CaseMachine& machine, const std::string& file) {
                          applied.error().line));
     return false;
   }
-  const firmware::VirtualController tried(machine.personality, machine.stored);
-  if (const auto& rejected = tried.rejected_settings(); !rejected.empty()) {
+  if (const auto rejected = keep_accepted(machine, *text); !rejected.empty()) {
     complain(fmt::format("{}: {} refuses ${}, left out.", file, name_of(machine.personality.firmware),
                          fmt::join(rejected, ", $")));
   }

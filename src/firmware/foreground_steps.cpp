@@ -171,7 +171,7 @@ bool Foreground::operator()(Dwell& step) {
 }
 
 bool Foreground::operator()(Freeze& step) {
-  if (!step.until) step.until = until_ = board_.now + step.duration;
+  if (!step.until) step.until = until_ = motion::dwell_end(board_.planner.rules(), board_.now, step.duration);
   is_frozen_ = board_.now < *step.until;
   if (is_frozen_) return wait_for(WaitingFor::Time);
   until_.reset();

@@ -73,13 +73,16 @@ void Homing::begin_move() {
   }
   if (added == motion::Planner::Added::Dropped) {
     end_move();
-  } else {
-    look_at_switches();
+  } else if (approaching_) {
+    lock(board_.limits());
   }
 }
 
 void Homing::look_at_switches() {
-  if (moving_ && approaching_) lock(board_.limits());
+  if (!moving_ || !approaching_) return;
+  // A step that is decided but not pulsed yet closes no switch; those on the way are watched.
+  const bool watches_all = board_.personality.homing.switch_sees_pulses;
+  lock(watches_all ? board_.workcell.limits_at(board_.steps(), {.axes = 0}) : board_.limits());
 }
 
 void Homing::lock(AxisMask axes) {
@@ -105,8 +108,11 @@ void Homing::end_move() {
   if (board_.motion_log) board_.motion_log->ended(board_.now, board_.steps());
   // What was queued before `$H` stays queued, and runs when homing is over.
   board_.executor.reset(board_.now);
-  settled_at_ = board_.now +
-                std::chrono::milliseconds{static_cast<std::int64_t>(board_.settings.number(setting::kHomingDebounce))};
+  const auto debounce =
+      std::chrono::milliseconds{static_cast<std::int64_t>(board_.settings.number(setting::kHomingDebounce))};
+  const motion::MotionRules& rules = board_.planner.rules();
+  const Duration pause = approaching_ ? Duration::zero() : board_.personality.homing.pull_off_pause;
+  settled_at_ = motion::delay_end(rules, motion::delay_end(rules, board_.now, pause), debounce);
 }
 
 Homing::Outcome Homing::advance() {

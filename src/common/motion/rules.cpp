@@ -39,6 +39,9 @@ constexpr MotionRules kGrblHal{.planner_blocks = 100,
                                .dwell_tick_counts = 15999,
                                .dwell_tick_phase = std::chrono::microseconds{520}};
 
+/// One pass of the main loop while it waits.
+constexpr Duration kPass = std::chrono::microseconds{10};
+
 }  // namespace
 
 const MotionRules& rules_of(vocabulary::Firmware firmware) {
@@ -59,23 +62,27 @@ Duration dwell_duration(const MotionRules& rules, float dwell_s) {
   return rules.dwell_step * (static_cast<std::uint32_t>(std::min(steps, kMost)) & rules.dwell_mask);
 }
 
-Instant dwell_end(const MotionRules& rules, Instant now, Duration dwell) {
-  if (rules.dwell_tick_counts == 0 || dwell < rules.dwell_step) return now + dwell;
-  // The main loop passes once before each step; what is left of the tick then counts as a whole one.
-  constexpr Duration kPass = std::chrono::microseconds{10};
+Instant delay_end(const MotionRules& rules, Instant now, Duration delay) {
+  if (rules.dwell_tick_counts == 0 || delay < std::chrono::milliseconds{1}) return now + delay;
   constexpr std::int64_t kNsPerS = 1'000'000'000;
   const std::int64_t hz = rules.step_timer_hz;
   const auto counts_of = [&](Duration duration) {
     const std::int64_t ns = duration.count();
     return ns / kNsPerS * hz + ns % kNsPerS * hz / kNsPerS;
   };
+  // What is left of the tick counts as a whole one.
   const std::int64_t tick = rules.dwell_tick_counts;
-  const Instant begun = now + kPass;
-  const std::int64_t ticks_before = counts_of(begun.time_since_epoch() + rules.dwell_tick_phase) / tick;
-  const std::int64_t last_counts = (ticks_before + dwell / std::chrono::milliseconds{1}) * tick;
+  const std::int64_t ticks_before = counts_of(now.time_since_epoch() + rules.dwell_tick_phase) / tick;
+  const std::int64_t last_counts = (ticks_before + delay / std::chrono::milliseconds{1}) * tick;
   const Duration last{last_counts / hz * kNsPerS + last_counts % hz * kNsPerS / hz};
-  const Duration lasted = last - rules.dwell_tick_phase - begun.time_since_epoch();
-  return begun + (lasted + kPass - Duration{1}) / kPass * kPass;
+  const Duration lasted = last - rules.dwell_tick_phase - now.time_since_epoch();
+  return now + (lasted + kPass - Duration{1}) / kPass * kPass;
+}
+
+Instant dwell_end(const MotionRules& rules, Instant now, Duration dwell) {
+  if (rules.dwell_tick_counts == 0 || dwell < rules.dwell_step) return now + dwell;
+  // The main loop passes once before each step; the steps follow one another without losing a tick.
+  return delay_end(rules, now + kPass, dwell);
 }
 
 }  // namespace kerf::motion

@@ -97,6 +97,9 @@ struct MotionRules {
 /// How long G4 P`dwell_s` lasts, once the motion before it has ended (gnea/grbl nuts_bolts.c; motion.md 1.5).
 [[nodiscard]] Duration dwell_duration(const MotionRules& rules, float dwell_s);
 
+/// When a wait of whole milliseconds ends that begins `now`: with a tick, where the firmware counts ticks.
+[[nodiscard]] Instant delay_end(const MotionRules& rules, Instant now, Duration delay);
+
 /// When a dwell of that duration ends which begins `now`.
 [[nodiscard]] Instant dwell_end(const MotionRules& rules, Instant now, Duration dwell);
 
