@@ -26,6 +26,10 @@ double delay_s(const Board& board, int setting_id, double fallback) {
 }
 
 Duration restore_delay(const Board& board, double seconds) {
+  const motion::MotionRules& rules = board.planner.rules();
+  if (rules.dwell_tick_counts != 0) {
+    return motion::dwell_end(rules, board.now, motion::dwell_duration(rules, static_cast<float>(seconds))) - board.now;
+  }
   const Duration delay = base::from_seconds(seconds);
   if (!board.personality.loop.restore_delays_take_passes) return delay;
   return delay + delay / board.planner.rules().dwell_step * board.personality.loop.pass;
@@ -440,7 +444,11 @@ void Cycle::advance() {
 void Cycle::handle(const motion::ExecutorEvent& event) {
   std::visit(base::Overloaded{
                  [&](const motion::BlockStarted& started) {
-                   if (board_.motion_log) board_.motion_log->began(started.at);
+                   if (board_.motion_log) {
+                     // A cancel may have dropped the last segments of the block before.
+                     if (halt_ != Halt::None) board_.motion_log->ended(started.at, board_.steps());
+                     board_.motion_log->began(started.at);
+                   }
                    board_.ports.block_began(started.source_line);
                    auto& messages = board_.motion_messages;
                    while (!messages.empty() && messages.front().block <= started.source_line) {

@@ -73,16 +73,13 @@ void Homing::begin_move() {
   }
   if (added == motion::Planner::Added::Dropped) {
     end_move();
-  } else if (approaching_) {
-    lock(board_.limits());
+  } else {
+    look_at_switches();
   }
 }
 
 void Homing::look_at_switches() {
-  if (!moving_ || !approaching_) return;
-  // A step that is decided but not pulsed yet closes no switch; those on the way are watched.
-  const bool watches_all = board_.personality.homing.switch_sees_pulses;
-  lock(watches_all ? board_.workcell.limits_at(board_.steps(), {.axes = 0}) : board_.limits());
+  if (moving_ && approaching_) lock(board_.limits());
 }
 
 void Homing::lock(AxisMask axes) {
