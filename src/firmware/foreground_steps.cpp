@@ -85,8 +85,6 @@ bool Foreground::plan_when_room(const AxisValues& target_mm, const gcode::Feed& 
     if (!has_planner_room()) return false;
     board_.plan_take_up(*std::exchange(take_up_mm_, std::nullopt), feed);
   }
-  // The main loop prepares segments before each block that it plans (mc_line), also between the chords of an arc.
-  board_.executor.advance_to(board_.now);
   if (!has_planner_room()) return false;
   board_.plan(target_mm, feed);
   turn_noted_ = false;
