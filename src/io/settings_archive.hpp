@@ -35,7 +35,7 @@ struct SettingsVersion {
   std::string reason{};
   std::string machine{};
   std::string path{};
-  std::vector<machine::SettingAssignment> settings;
+  std::vector<machine::SettingAssignment> settings{};
 };
 BOOST_DESCRIBE_STRUCT(SettingsVersion, (), (number, taken, reason, machine, path, settings))
 
