@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/exit_status.hpp"
+#include "io/recording_options.hpp"
 
 namespace kerf::apps {
 
@@ -17,6 +18,7 @@ struct RunOptions {
   std::string file;
   std::string machine = kDefaultMachine;
   bool json = false;
+  io::RecordingOptions recording{};
 };
 [[nodiscard]] ExitStatus run(const RunOptions& options);
 
@@ -44,6 +46,7 @@ struct VirtualOptions {
 struct DescribeOptions {
   std::string machine = kDefaultMachine;
   bool json = false;
+  io::RecordingOptions recording{};
 };
 [[nodiscard]] ExitStatus describe_machine(const DescribeOptions& options);
 
@@ -58,6 +61,7 @@ struct SettingsOptions {
   bool verbose = false;
   bool dry_run = false;
   bool force = false;
+  io::RecordingOptions recording{};
 };
 [[nodiscard]] ExitStatus list_settings(const SettingsOptions& options);
 [[nodiscard]] ExitStatus get_settings(const SettingsOptions& options);
@@ -69,6 +73,7 @@ struct SettingsOptions {
 
 struct ConsoleOptions {
   std::string machine = kDefaultMachine;
+  io::RecordingOptions recording{};
 };
 [[nodiscard]] ExitStatus console(const ConsoleOptions& options);
 
@@ -110,6 +115,42 @@ struct SimulateOptions {
   std::string link = "saturated";
 };
 [[nodiscard]] ExitStatus simulate(const SimulateOptions& options);
+
+struct RecordOptions {
+  std::string machine = kDefaultMachine;
+  bool listens = false;        ///< send nothing at all
+  bool shows_reports = false;  ///< status reports too
+  bool quiet = false;
+  io::RecordingOptions recording{};
+};
+[[nodiscard]] ExitStatus record(const RecordOptions& options);
+
+struct LogListOptions {
+  std::string folder;  ///< empty: the user's own
+  bool json = false;
+};
+[[nodiscard]] ExitStatus list_logs(const LogListOptions& options);
+
+struct LogShowOptions {
+  std::string log = "latest";
+  std::string direction = "both";
+  std::vector<std::string> kinds;
+  std::vector<std::string> hidden;
+  std::string since;
+  std::string until;
+  std::string pattern;
+  bool by_clock = false;
+  bool json = false;
+};
+[[nodiscard]] ExitStatus show_log(const LogShowOptions& options);
+
+struct ReplayOptions {
+  std::string log;
+  std::string program;  ///< a file, for a program that is too large to be in the log
+  bool verbose = false;
+  bool json = false;
+};
+[[nodiscard]] ExitStatus replay(const ReplayOptions& options);
 
 /// Says what went wrong on standard error, as one sentence behind the program's name.
 void complain(const std::string& sentence);

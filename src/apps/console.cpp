@@ -37,7 +37,8 @@ std::string history_file() {
 
 class Console {
  public:
-  Console(io::EventLoop& loop, io::MachineUrl url) : loop_(loop), url_(std::move(url)), last_words_(loop) {}
+  Console(io::EventLoop& loop, io::MachineUrl url, const io::RecordingOptions& recording)
+      : loop_(loop), url_(std::move(url)), recording_(recording), last_words_(loop) {}
 
   ExitStatus run() {
     constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
@@ -47,7 +48,9 @@ class Console {
     host_ = std::make_unique<io::SessionHost>(
         loop_, url_, options,
         io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
-                                   .lost = [this](const io::TransportError& error) { on_lost(error); }});
+                                   .lost = [this](const io::TransportError& error) { on_lost(error); },
+                                   .noted = [this](const std::string& sentence) { show(sentence); }},
+        recording_);
     loop_.run();
     return status_.value_or(ExitStatus::Done);
   }
@@ -180,6 +183,7 @@ class Console {
 
   io::EventLoop& loop_;
   const io::MachineUrl url_;
+  const io::RecordingOptions& recording_;
   io::Timer last_words_;
   std::optional<ExitStatus> status_;
   int reports_asked_ = 0;
@@ -197,7 +201,7 @@ ExitStatus console(const ConsoleOptions& options) {
     return ExitStatus::Usage;
   }
   io::EventLoop loop;
-  Console console(loop, *url);
+  Console console(loop, *url, options.recording);
   return console.run();
 }
 

@@ -118,7 +118,7 @@ void print_text(const Capabilities& machine) {
 }  // namespace
 
 ExitStatus describe_machine(const DescribeOptions& options) {
-  return visit(options.machine, {}, [&](const io::SessionHost& host) {
+  return visit(options.machine, {.recording = options.recording}, [&](const io::SessionHost& host) {
     const Capabilities found = machine::without_passwords(host.session().capabilities());
     const auto& drift = host.session().settings_drift();
     if (options.json) {

@@ -30,7 +30,8 @@ class Visitor {
         loop_, url_, options,
         io::SessionHost::Callbacks{
             .event = [this](const session::Event& event) { on_event(event); },
-            .lost = [this](const io::TransportError& error) { fail(io::explain(url_, error)); }});
+            .lost = [this](const io::TransportError& error) { fail(io::explain(url_, error)); }},
+        options_.recording);
     loop_.run();
     return status_.value_or(ExitStatus::NoConnection);
   }

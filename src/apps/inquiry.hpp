@@ -20,6 +20,7 @@ struct VisitOptions {
   bool enumerate = true;
   /// A machine that is busy or under a pendant is good enough: its reports are all that is wanted.
   bool takes_busy = false;
+  io::RecordingOptions recording{};
 };
 
 /// Complains where nothing was found. Interrupted by Ctrl-C.

@@ -60,14 +60,16 @@ JobRunner::JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<co
                      JobView& view, bool can_ask)
     : loop_(loop), url_(std::move(url)), program_(std::move(program)), view_(view), can_ask_(can_ask), redraw_(loop) {}
 
-ExitStatus JobRunner::run() {
+ExitStatus JobRunner::run(const io::RecordingOptions& recording) {
   constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
   signals_ = std::make_unique<io::SignalWatch>(loop_, kSignals, [this](int signal) { on_signal(signal); });
   if (can_ask_) keys_ = std::make_unique<KeyReader>(loop_, [this](char key) { on_key(key); });
   host_ = std::make_unique<io::SessionHost>(
       loop_, url_, session::SessionOptions{},
       io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
-                                 .lost = [this](const io::TransportError& error) { on_lost(error); }});
+                                 .lost = [this](const io::TransportError& error) { on_lost(error); },
+                                 .noted = [this](const std::string& sentence) { view_.noted(sentence); }},
+      recording);
   loop_.run();
   return status_.value_or(ExitStatus::Interrupted);
 }

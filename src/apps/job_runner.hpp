@@ -19,7 +19,7 @@ class JobRunner {
             bool can_ask);
 
   /// Runs the event loop until the job has ended.
-  [[nodiscard]] ExitStatus run();
+  [[nodiscard]] ExitStatus run(const io::RecordingOptions& recording);
 
  private:
   /// What the operator wants beyond cutting. Each Ctrl-C goes one further.

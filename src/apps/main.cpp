@@ -43,11 +43,20 @@ constexpr const char* kFooter =
 /// The sub-command that was chosen, ready to run.
 using Chosen = std::function<ExitStatus()>;
 
+/// The options of every command that connects to a machine.
+void add_machine(CLI::App& command, std::string& machine, kerf::io::RecordingOptions& recording) {
+  command.add_option("-m,--machine", machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  CLI::Option* folder =
+      command.add_option("--record", recording.folder, "Keep the log of the connection in this folder")
+          ->type_name("FOLDER");
+  command.add_flag("!--no-record", recording.records, "Keep no log of the connection")->excludes(folder);
+}
+
 void add_run(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::RunOptions>();
   CLI::App* command = kerf.add_subcommand("run", "Cut a G-code file: connect, stream it, show the progress");
   command->add_option("FILE", options->file, "The G-code file")->required()->type_name("");
-  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  add_machine(*command, options->machine, options->recording);
   command->add_flag("--json", options->json, "Print events as JSON, one object a line, instead of the progress");
   command->footer("\nCtrl-C (or Space) holds the machine and asks whether to go on; Ctrl-C again stops the job.\n");
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::run(*options); }; });
@@ -153,7 +162,7 @@ void add_virtual(CLI::App& kerf, Chosen& chosen) {
 void add_describe(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::DescribeOptions>();
   CLI::App* command = kerf.add_subcommand("info", "Say what a controller is and can do, as it tells itself");
-  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  add_machine(*command, options->machine, options->recording);
   command->add_flag("--json", options->json, "Print everything as one JSON object");
   command->footer("");
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::describe_machine(*options); }; });
@@ -162,7 +171,7 @@ void add_describe(CLI::App& kerf, Chosen& chosen) {
 void add_console(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::ConsoleOptions>();
   CLI::App* command = kerf.add_subcommand("console", "Type to a controller; answers come with their meaning");
-  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  add_machine(*command, options->machine, options->recording);
   command->footer(
       "\nAt the start of a line these keys act at once: ? status, ! feed hold, ~ cycle start, Ctrl-X reset.\n"
       "Arrow up brings back earlier lines; Ctrl-D leaves.\n");
@@ -183,7 +192,7 @@ using SettingsCommand = ExitStatus (*)(const kerf::apps::SettingsOptions&);
 CLI::App& add_settings_command(CLI::App& settings, Chosen& chosen, std::shared_ptr<kerf::apps::SettingsOptions> options,
                                const char* name, const char* help, SettingsCommand run) {
   CLI::App* command = settings.add_subcommand(name, help);
-  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  add_machine(*command, options->machine, options->recording);
   command->add_flag("--json", options->json, "Print JSON");
   command->footer("");
   command->callback([&chosen, options, run] { chosen = [options, run] { return run(*options); }; });
@@ -302,6 +311,74 @@ void add_simulate(CLI::App& kerf, Chosen& chosen) {
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::simulate(*options); }; });
 }
 
+void add_record(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::RecordOptions>();
+  CLI::App* command = kerf.add_subcommand("record", "Watch a machine and write down what is said, until Ctrl-C");
+  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  command->add_option("--record", options->recording.folder, "Keep the log in this folder")->type_name("FOLDER");
+  command->add_flag("--listen", options->listens, "Only listen: send not a byte, and ask nothing");
+  command->add_flag("--reports", options->shows_reports, "Show status reports and the questions for them too");
+  command->add_flag("-q,--quiet", options->quiet, "Show nothing of it");
+  command->footer("\nEvery other command that connects writes its log too, unless told --no-record.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::record(*options); }; });
+}
+
+void add_log_show(CLI::App& log, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::LogShowOptions>();
+  CLI::App* command = log.add_subcommand("show", "Print a log, one line for each line that was said");
+  command->add_option("LOG", options->log, "A log: its path, its name in the folder of logs, or latest")
+      ->type_name("")
+      ->capture_default_str();
+  command->add_option("--direction", options->direction, "Only what was sent, or only what was received")
+      ->check(CLI::IsMember({"sent", "received", "both"}))
+      ->type_name("sent|received|both");
+  command
+      ->add_option(
+          "--kind", options->kinds,
+          "Only these kinds: ok, error, alarm, status, welcome, setting, feedback … of what was received; line, "
+          "realtime; command, program, opened, closed, header, time")
+      ->delimiter(',')
+      ->type_name("KIND,…");
+  command->add_option("--hide", options->hidden, "All but these kinds")->delimiter(',')->type_name("KIND,…");
+  command
+      ->add_option("--since", options->since, "From this moment on: 12.5 (seconds as shown), 13:05:01, or with a date")
+      ->type_name("WHEN");
+  command->add_option("--until", options->until, "Before this moment")->type_name("WHEN");
+  command->add_option("--grep", options->pattern, "Only lines in which this regular expression is found")
+      ->type_name("REGEX");
+  command->add_flag("--clock", options->by_clock, "Show the time of day (UTC) instead of seconds");
+  command->add_flag("--json", options->json, "Print one JSON object a line");
+  command->footer("\nSigns: > a line sent, ! realtime bytes sent, < a line received.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::show_log(*options); }; });
+}
+
+void add_log(CLI::App& kerf, Chosen& chosen) {
+  CLI::App* command = kerf.add_subcommand("log", "Look into the logs of connections");
+  command->require_subcommand(1);
+  add_log_show(*command, chosen);
+  auto options = std::make_shared<kerf::apps::LogListOptions>();
+  CLI::App* list = command->add_subcommand("list", "List the logs, the newest last");
+  list->add_option("FOLDER", options->folder, "Where they are, if not in the usual place")->type_name("");
+  list->add_flag("--json", options->json, "Print the list as JSON");
+  list->footer("");
+  list->callback([&chosen, options] { chosen = [options] { return kerf::apps::list_logs(*options); }; });
+}
+
+void add_replay(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::ReplayOptions>();
+  CLI::App* command =
+      kerf.add_subcommand("replay", "Decide once more what Kerf decided in a log, and compare the bytes");
+  command->add_option("LOG", options->log, "A log: its path, its name in the folder of logs, or latest")
+      ->required()
+      ->type_name("");
+  command->add_option("--program", options->program, "The G-code file of the job, when it was too large for the log")
+      ->type_name("FILE");
+  command->add_flag("-v,--verbose", options->verbose, "Show what Kerf told meanwhile");
+  command->add_flag("--json", options->json, "Print the result as one JSON object");
+  command->footer("\nExit status: 0 the same bytes, 1 this log cannot be replayed, 3 other bytes.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::replay(*options); }; });
+}
+
 /// What is wrong with the command line, as one sentence that ends with what to do.
 std::string sentence_of(const CLI::App& kerf, const CLI::ParseError& error, std::string_view first_word) {
   std::string help = "kerf --help";
@@ -338,6 +415,9 @@ int start(int argc, char** argv) {
   add_verify(kerf, chosen);
   add_conform(kerf, chosen);
   add_simulate(kerf, chosen);
+  add_record(kerf, chosen);
+  add_log(kerf, chosen);
+  add_replay(kerf, chosen);
   if (argc < 2) {
     kerf::apps::put("{}", kerf.help());
     return static_cast<int>(ExitStatus::Usage);
@@ -355,6 +435,7 @@ int start(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a log or table that grows too large is an error of that write, too
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe or socket is an error of that write, not the end of the program
   try {
     return start(argc, argv);

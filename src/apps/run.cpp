@@ -37,7 +37,7 @@ ExitStatus run(const RunOptions& options) {
   io::EventLoop loop;
   const bool can_ask = !options.json && is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO);
   JobRunner runner(loop, *url, *std::move(program), *view, can_ask);
-  return runner.run();
+  return runner.run(options.recording);
 }
 
 }  // namespace kerf::apps

@@ -328,7 +328,7 @@ class Restore : public Change {
 template <typename Kind>
 ExitStatus run(const SettingsOptions& options) {
   Kind errand(options);
-  return run_errand(options.machine, {}, errand);
+  return run_errand(options.machine, {.recording = options.recording}, errand);
 }
 
 }  // namespace

@@ -23,9 +23,11 @@ session::LinkLoss loss_of(TransportFault fault) {
 
 }  // namespace
 
-SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::SessionOptions options, Callbacks callbacks)
+SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::SessionOptions options, Callbacks callbacks,
+                         const RecordingOptions& recording)
     : loop_(loop),
       session_(with_traits_of(url, options)),
+      log_(loop, recording, {.machine = to_string(url), .options = with_traits_of(url, options)}),
       callbacks_(std::move(callbacks)),
       keeper_(url),
       timer_(loop),
@@ -58,18 +60,29 @@ void SessionHost::on_lost(const TransportError& error) {
   callbacks_.lost(error);
 }
 
+void SessionHost::write_down() {
+  for (const session::Record& record : session_.take_records()) {
+    log_.append(record);
+    if (callbacks_.recorded) callbacks_.recorded(record);
+  }
+  const auto fault = log_.take_fault();
+  if (fault && callbacks_.noted) callbacks_.noted(*fault);
+}
+
 void SessionHost::settle() {
   if (is_settling_) return;  // an observer submitted a command: the loop below goes on with it
   is_settling_ = true;
   for (session::Outbox outbox = session_.take_outbox(); !outbox.empty(); outbox = session_.take_outbox()) {
     if (!outbox.realtime.empty()) transport_->write_realtime(outbox.realtime);
     if (!outbox.lines.empty()) transport_->write_lines(outbox.lines);
+    write_down();  // behind the bytes: they have no time to lose
     for (const session::Event& event : outbox.events) {
       if (const auto command = keeper_.on_event(event, session_)) session_.submit(loop_.now(), *command);
       callbacks_.event(event);
     }
   }
   is_settling_ = false;
+  write_down();
   timer_.arm(session_.next_deadline(), [this] {
     session_.advance_to(loop_.now());
     settle();

@@ -8,7 +8,8 @@
 #include "io/machine_url.hpp"
 #include "io/settings_keeper.hpp"
 #include "io/transport.hpp"
-#include "sender/session/session.hpp"
+#include "io/wire_log.hpp"
+#include "sender/session/recorded_session.hpp"
 
 namespace kerf::io {
 
@@ -19,22 +20,31 @@ class SessionHost {
     std::function<void(const session::Event&)> event;
     /// The link could not be opened or is gone. The session was told, and its events came before.
     std::function<void(const TransportError&)> lost;
+    /// Something about this side of the link that the operator should know, in one sentence.
+    std::function<void(const std::string& sentence)> noted = {};
+    /// What is written down, as it happens.
+    std::function<void(const session::Record&)> recorded = {};
   };
 
-  /// Starts to open the link at once. `options.link` is filled in from the address.
-  SessionHost(EventLoop& loop, const MachineUrl& url, session::SessionOptions options, Callbacks callbacks);
+  /// Starts to open the link at once. `options.link` is filled in from the address. The connection is recorded.
+  SessionHost(EventLoop& loop, const MachineUrl& url, session::SessionOptions options, Callbacks callbacks,
+              const RecordingOptions& recording = {});
 
   void submit(const session::Command& command);
   [[nodiscard]] const session::Session& session() const { return session_; }
   [[nodiscard]] bool is_open() const { return is_open_; }
+  /// The file in which the connection is recorded; empty if in none.
+  [[nodiscard]] const std::string& log_path() const { return log_.path(); }
 
  private:
   void on_lost(const TransportError& error);
   /// Empties the outbox, and arms the timer.
   void settle();
+  void write_down();
 
   EventLoop& loop_;
-  session::Session session_;
+  session::RecordedSession session_;
+  WireLog log_;
   Callbacks callbacks_;
   SettingsKeeper keeper_;
   Timer timer_;

@@ -17,14 +17,18 @@ struct FileCloser {
 using File = std::unique_ptr<std::FILE, FileCloser>;
 
 std::unexpected<FileError> failed(int error_number) {
+  return std::unexpected(file_error(error_number));
+}
+
+}  // namespace
+
+FileError file_error(int error_number) {
   FileFault fault = FileFault::Failed;
   if (error_number == ENOENT || error_number == ENOTDIR) fault = FileFault::NotFound;
   if (error_number == EACCES || error_number == EPERM || error_number == EROFS) fault = FileFault::NoPermission;
   if (error_number == EISDIR) fault = FileFault::IsDirectory;
-  return std::unexpected(FileError{.fault = fault, .system_text = std::generic_category().message(error_number)});
+  return {.fault = fault, .system_text = std::generic_category().message(error_number)};
 }
-
-}  // namespace
 
 std::expected<std::string, FileError> read_text_file(const std::string& path) {
   const File file(std::fopen(path.c_str(), "rbe"));

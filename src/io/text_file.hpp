@@ -19,6 +19,9 @@ struct FileError {
 /// Writes a new file beside `path` and renames it, so that a reader or a crash sees the old text or the new one.
 [[nodiscard]] std::expected<void, FileError> replace_text_file(const std::string& path, std::string_view text);
 
+/// The fault behind a system's error number.
+[[nodiscard]] FileError file_error(int error_number);
+
 /// One sentence for people: what, where, what to do.
 [[nodiscard]] std::string explain(const FileError& error, std::string_view path);
 

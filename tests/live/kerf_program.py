@@ -236,14 +236,31 @@ def free_port():
 
 
 class LiveTest(unittest.TestCase):
-    """With a folder that goes when the test ends, and the check that every error message has to pass."""
+    """With a folder that goes when the test ends, and the check that every error message has to pass. The logs of all
+    connections are replayed at the end: the same bytes must come out."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="kerf-live-")
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
+        before = os.environ.get("XDG_STATE_HOME", "")
+        self.addCleanup(os.environ.update, XDG_STATE_HOME=before)
         # What one test's machines were seen with is nothing to another's.
-        os.environ["XDG_STATE_HOME"] = os.path.join(self.folder, "state-home")
+        os.environ["XDG_STATE_HOME"] = os.path.join(self.folder, "state")
+        self.addCleanup(self.replay_logs)
+
+    def logs(self):
+        """The logs of the test so far, the oldest first."""
+        folder = os.path.join(self.folder, "state", "kerf", "logs")
+        if not os.path.isdir(folder):
+            return []
+        return [path for path in sorted(os.path.join(folder, name) for name in os.listdir(folder))
+                if os.path.getsize(path) > 0]
+
+    def replay_logs(self):
+        for log in self.logs():
+            replayed = kerf("replay", log)
+            self.assertEqual(replayed.returncode, DONE, replayed.stdout + replayed.stderr)
 
     def file(self, name, content):
         path = os.path.join(self.folder, name)
