@@ -57,9 +57,9 @@ class LogLines {
 /// Which entries to show.
 struct LogFilter {
   LogDirection direction = LogDirection::None;  ///< None: all
-  std::vector<std::string> kinds{};               ///< beginnings of kinds; none: all but "time"
-  std::vector<std::string> hidden{};              ///< beginnings of kinds
-  std::string since{};                            ///< seconds as shown, or a wall clock; compared as text was given
+  std::vector<std::string> kinds{};             ///< beginnings of kinds; none: all but "time"
+  std::vector<std::string> hidden{};            ///< beginnings of kinds
+  std::string since{};                          ///< seconds as shown, or a wall clock; compared as text was given
   std::string until;
   std::optional<std::regex> pattern{};  ///< somewhere in the text
 };

@@ -16,7 +16,8 @@ constexpr std::string_view kDescription = "[SETTING:";
 }  // namespace
 
 std::string PasswordMask::token_of(std::string_view password) {
-  std::size_t number = 0;  // among the passwords of this length
+  if (password.find_first_not_of('*') == std::string_view::npos) return std::string(password);
+  std::size_t number = 1;  // among the passwords of this length
   bool is_known = false;
   for (const std::string& known : passwords_) {
     if (known.size() != password.size()) continue;

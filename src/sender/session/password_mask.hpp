@@ -10,10 +10,10 @@
 
 namespace kerf::session {
 
-/// Replaces each password by a token of the same length: stars, and for a second password of that length a number at
-/// the end. The same password always has the same token, and a token stands for itself, so masked bytes compare as the
-/// original ones did: a value that was read back still equals the one written, and masking a masked log changes
-/// nothing.
+/// Replaces each password by a token of the same length: stars with a number at the end. The same password always has
+/// the same token, a token stands for itself, and the stars that a controller prints instead of a password stay what
+/// they are. So masked bytes compare as the original ones did: a value that was read back still equals the one written,
+/// and masking a masked log changes nothing.
 class PasswordMask {
  public:
   void learn(const protocol::SettingDefinition& row) { secrets_.learn(row); }

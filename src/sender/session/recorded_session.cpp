@@ -7,6 +7,8 @@
 
 #include <boost/mp11.hpp>
 
+#include "sender/session/hidden_passwords.hpp"
+
 namespace kerf::session {
 namespace {
 
@@ -85,6 +87,7 @@ void RecordedSession::settle(Instant now) {
   if (!out.realtime.empty() || !out.lines.empty()) {
     note(now, BytesSent{.realtime = out.realtime, .lines = mask_.masked_text(out.lines)});
   }
+  for (Event& event : out.events) hide_passwords(event, mask_.secrets());
   waiting_.realtime += out.realtime;
   waiting_.lines += out.lines;
   waiting_.events.insert(waiting_.events.end(), std::make_move_iterator(out.events.begin()),
