@@ -144,8 +144,9 @@ class Replaying(LiveTest):
         with VirtualMachine("grblhal") as machine:
             with Running("run", part, "--machine", machine.url) as job:
                 job.wait_for("Cutting")
-                for _ in range(3):
+                for said in ("Holding", "Stopping"):
                     job.signal(signal.SIGINT)
+                    job.wait_for(said)
                 job.wait()
         self.assertEqual(kerf("replay", "latest").returncode, DONE)
         moved = part + ".moved"
