@@ -28,9 +28,8 @@ class Visitor {
     options.enumerate = options_.enumerate;
     host_ = std::make_unique<io::SessionHost>(
         loop_, url_, options,
-        io::SessionHost::Callbacks{
-            .event = [this](const session::Event& event) { on_event(event); },
-            .lost = [this](const io::TransportError& error) { fail(io::explain(url_, error)); }},
+        io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
+                                   .lost = [this](const io::TransportError& error) { fail(io::explain(url_, error)); }},
         options_.recording);
     loop_.run();
     return status_.value_or(ExitStatus::NoConnection);
