@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "apps/output.hpp"
+#include "sender/machine/secrets.hpp"
 
 namespace kerf::apps {
 namespace {
@@ -99,7 +100,8 @@ class LineEditor final : public InputReader {
     end_line();
     if (!line.empty()) {
       HistEvent event;
-      history(history_, &event, H_ENTER, line.c_str());
+      // The history is a file: a password must not stay there.
+      if (machine::Secrets().secret_in(line).empty()) history(history_, &event, H_ENTER, line.c_str());
     }
     callbacks_.line(line);
     begin_line();

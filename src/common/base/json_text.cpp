@@ -72,8 +72,8 @@ class Parser {
     if (take('}')) return true;
     do {
       skip_blanks();
-      auto& [name, member] = value.members.emplace_back();
-      if (!read_string(name) || !take(':') || !read_value(member, depth + 1)) return false;
+      if (!read_string(value.names.emplace_back()) || !take(':')) return false;
+      if (!read_value(value.elements.emplace_back(), depth + 1)) return false;
     } while (take(','));
     return take('}');
   }
@@ -141,8 +141,8 @@ class Parser {
 }  // namespace
 
 const JsonValue* JsonValue::find(std::string_view name) const {
-  const auto found = std::ranges::find_if(members, [name](const auto& member) { return member.first == name; });
-  return found == members.end() ? nullptr : &found->second;
+  const auto found = std::ranges::find(names, name);
+  return found == names.end() ? nullptr : &elements[static_cast<std::size_t>(found - names.begin())];
 }
 
 std::optional<JsonValue> parse_json(std::string_view text) {

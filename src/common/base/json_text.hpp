@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace kerf::base {
@@ -18,8 +17,9 @@ struct JsonValue {
   bool truth = false;
   /// The digits of a number, or the bytes of a string.
   std::string text;
+  /// Of an array, or of an object: there `names` has the name of each.
   std::vector<JsonValue> elements;
-  std::vector<std::pair<std::string, JsonValue>> members;
+  std::vector<std::string> names;
 
   /// The member called `name`; null when there is none.
   [[nodiscard]] const JsonValue* find(std::string_view name) const;

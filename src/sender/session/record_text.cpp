@@ -152,10 +152,11 @@ bool read(const JsonValue& json, std::optional<T>& value) {
 
 template <typename T>
 bool read(const JsonValue& json, std::vector<T>& values) {
+  if (json.kind != Kind::Array) return false;
   for (const JsonValue& element : json.elements) {
     if (!read(element, values.emplace_back())) return false;
   }
-  return json.kind == Kind::Array;
+  return true;
 }
 
 template <DescribedStruct T>
