@@ -73,7 +73,14 @@ class Recording(LiveTest):
         with VirtualMachine("grblhal") as machine:
             console = kerf("console", "--machine", machine.url, text="$75=hunter2\n$330=hunter3\n$330\n")
             self.assertEqual(console.returncode, DONE, console.stderr)
-        shown = kerf("log", "show").stdout
+            self.assertNotIn("hunter", console.stdout + console.stderr)
+            part = self.file("part.nc", "G21\n$9001=hunter2\n")
+            for form in ([], ["--json"]):
+                job = kerf("run", part, "--machine", machine.url, *form)
+                self.assertEqual(job.returncode, REFUSED, job.stdout)
+                self.assertNotIn("hunter", job.stdout + job.stderr)
+                self.assertIn("$9001=*******", job.stdout + job.stderr)
+        shown = "".join(kerf("log", "show", log).stdout for log in self.logs())
         self.assertNotIn("hunter", shown)
         self.assertIn("$75=******1", shown)
 
