@@ -61,8 +61,12 @@ TEST_P(Settings, SomebodyPressesKeysMeanwhile) {
     world.submit(session::SendRealtime{'~'});
     ASSERT_TRUE(world.run_until(is_changed, 120s)) << seed;
     const auto result = told<session::SettingsChanged>(world).front().result;
-    if (result.outcome == SettingsOutcome::Done) EXPECT_THAT(result.changed, SizeIs(7)) << seed;
-    if (result.outcome == SettingsOutcome::RolledBack) EXPECT_THAT(result.changed, SizeIs(0)) << seed;
+    if (result.outcome == SettingsOutcome::Done) {
+      EXPECT_THAT(result.changed, SizeIs(7)) << seed;
+    }
+    if (result.outcome == SettingsOutcome::RolledBack) {
+      EXPECT_THAT(result.changed, SizeIs(0)) << seed;
+    }
     EXPECT_TRUE(world.run_until(is_ready, 60s)) << seed;
   }
 }
