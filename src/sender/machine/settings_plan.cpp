@@ -25,9 +25,8 @@ struct Dependency {
 
 // grblHAL settings.c set_homing_enable, gnea/grbl settings.c: soft limits and clipped jogs need homing; switching
 // homing on copies X's homing rates to all axes; what selects a spindle, an axis' kind or how texts are read comes
-// before what depends on it.
+// before what depends on it. Rabbit takes soft limits without homing.
 constexpr auto kGrblAndHal = FirmwareSet::Grbl | FirmwareSet::GrblHal;
-constexpr auto kRabbit = FirmwareSet::Rabbit;  // takes soft limits without homing
 constexpr auto kHal = FirmwareSet::GrblHal;
 constexpr std::array kDependencies{
     Dependency{20, 20, 22, true, kGrblAndHal}, Dependency{40, 40, 22, true, kHal},

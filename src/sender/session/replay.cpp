@@ -11,8 +11,6 @@
 namespace kerf::session {
 namespace {
 
-constexpr int kVersion = LogHeader{}.version;
-
 /// "'?', then 'G0X1\\n'"
 std::string text_of(const BytesSent& sent) {
   if (sent == BytesSent{}) return "nothing";
@@ -44,7 +42,7 @@ Replay::Stop Replay::differ(Instant at, const BytesSent& logged) const {
 }
 
 Replay::Stop Replay::follow(Instant at, const LogHeader& header) {
-  if (header.version != kVersion) return stop(ReplayEnd::OtherVersion, at);
+  if (header.version != LogHeader{}.version) return stop(ReplayEnd::OtherVersion, at);
   if (header.part != part_ + 1) return stop(ReplayEnd::MiddlePart, at);
   part_ = header.part;
   listening_ = header.listening;
