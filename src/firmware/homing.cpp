@@ -47,7 +47,8 @@ void Homing::begin_move() {
   board_.executor.set_position(position);
   board_.planner.sync_position(position);
   board_.executor.clear_watches();
-  board_.executor.freeze_axes(0);
+  // Queued motion may come first: of that, too, only these axes step.
+  board_.executor.freeze_axes(static_cast<AxisMask>(board_.all_axes() & ~axes_));
   unlocked_ = axes_;
   moving_ = true;
 
@@ -86,7 +87,7 @@ void Homing::lock(AxisMask axes) {
   const auto left = static_cast<AxisMask>(unlocked_ & ~axes);
   if (left == unlocked_) return;
   unlocked_ = left;
-  board_.executor.freeze_axes(static_cast<AxisMask>(axes_ & ~unlocked_));
+  board_.executor.freeze_axes(static_cast<AxisMask>(board_.all_axes() & ~unlocked_));
   if (unlocked_ == 0) end_move_after(board_.personality.loop.switch_to_stop);
 }
 
@@ -108,7 +109,7 @@ void Homing::end_move() {
   const auto debounce =
       std::chrono::milliseconds{static_cast<std::int64_t>(board_.settings.number(setting::kHomingDebounce))};
   const motion::MotionRules& rules = board_.planner.rules();
-  const Duration pause = approaching_ ? Duration::zero() : board_.personality.homing.pull_off_pause;
+  const Duration pause = approaching_ ? Duration::zero() : board_.personality.homing.end_pause;
   settled_at_ = motion::delay_end(rules, motion::delay_end(rules, board_.now, pause), debounce);
 }
 
@@ -119,10 +120,15 @@ Homing::Outcome Homing::advance() {
   }
   if (moving_ && approaching_ && touched != 0) lock(touched);
   if (cycle_.take_motion_ended() && moving_ && ends_at_ == kNever) {
-    if (approaching_) return Outcome::SwitchNotFound;
-    if ((board_.limits() & axes_) != 0) return Outcome::SwitchStuck;
-    end_move_after(0);
+    const bool stuck = !approaching_ && (board_.limits() & axes_) != 0;
+    if (approaching_ || stuck) {
+      failure_ = stuck ? Outcome::SwitchStuck : Outcome::SwitchNotFound;
+      settled_at_ = motion::delay_end(board_.planner.rules(), board_.now, board_.personality.homing.end_pause);
+    } else {
+      end_move_after(0);
+    }
   }
+  if (failure_ != Outcome::Moving) return board_.now < settled_at_ ? Outcome::Moving : failure_;
   if (ends_at_ <= board_.now) end_move();
   if (moving_ || board_.now < settled_at_) return Outcome::Moving;
 

@@ -25,7 +25,8 @@ class Homing {
   void look_at_switches();
   void abandon() {
     moves_left_ = 0;
-    ends_at_ = kNever;
+    settled_at_ = ends_at_ = kNever;
+    failure_ = Outcome::Moving;
   }
   [[nodiscard]] bool is_active() const { return moves_left_ > 0; }
   [[nodiscard]] Instant next_deadline() const { return std::min(settled_at_, ends_at_); }
@@ -47,6 +48,8 @@ class Homing {
   int moves_left_ = 0;
   float distance_mm_ = 0;
   float rate_mm_per_min_ = 0;
+  /// How the cycle fails at `settled_at_`.
+  Outcome failure_ = Outcome::Moving;
   Instant settled_at_ = kNever;
   Instant ends_at_ = kNever;
 };

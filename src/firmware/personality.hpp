@@ -166,8 +166,8 @@ struct HomingRules {
   TravelRule travel = TravelRule::NegativeSpace;
   /// `$HX` exists.
   bool homes_single_axes = true;
-  /// How long the loop stands still when a pull-off has ended (grblHAL).
-  Duration pull_off_pause{};
+  /// How long the loop stands still when a move of the cycle has come to its planned end (grblHAL).
+  Duration end_pause{};
   /// A step is pulsed one interrupt after it was decided, so a switch closes that much later.
   bool switch_sees_pulses = false;
   /// Answer to `$H` when no cycle has an axis.

@@ -295,6 +295,8 @@ SystemCommands::Result SystemCommands::home(const ParsedCommand& command, Steps&
     board_.set_accessories({});
     if (asked == 0) board_.homed = static_cast<AxisMask>(board_.homed & ~board_.homing_axes());
     if (!board_.reports(vocabulary::ReportBit::ReportWhenHoming)) {
+      // The delay prepares what is queued, and homing then goes on from there (grblHAL/core protocol.c).
+      board_.executor.prepare_at_rest();
       steps.insert(steps.end(), {SayStatus{}, Freeze{.duration = kHomingAnnouncement}});
     }
   }

@@ -50,7 +50,8 @@ Planner::Added Executor::start_system_motion(Instant now, const PathLine& line, 
     return Planner::Added::Dropped;
   }
   system_kind_ = kind;
-  preparer_.begin_system_motion(kind == SystemMotion::Parking);
+  const bool keeps_block = kind == SystemMotion::Parking;
+  preparer_.begin_system_motion(keeps_block, !keeps_block && segment_count_ != 0);
   wake(now + after);
   return Planner::Added::Queued;
 }
@@ -107,15 +108,18 @@ void Executor::reset(Instant now) {
   watches_.clear();
 }
 
+bool Executor::has_more_for_free_slots() const {
+  return segment_count_ < static_cast<std::size_t>(rules_.segment_slots) && preparer_.has_work();
+}
+
 bool Executor::needs_refill() const {
-  return (stage_ == Stage::Stepping || stage_ == Stage::Draining) &&
-         segment_count_ < static_cast<std::size_t>(rules_.segment_slots) && preparer_.has_work();
+  return (stage_ == Stage::Stepping || stage_ == Stage::Draining) && has_more_for_free_slots();
 }
 
 void Executor::refill() {
   constexpr int kMostEmptySegments = 100'000;
   int empty_segments = 0;
-  while (needs_refill()) {
+  while (has_more_for_free_slots()) {
     const auto segment = preparer_.next();
     if (!segment) return;
     // Lengths beyond 32 bits of steps give segments without a step, without end: the stepper then finds none.
@@ -174,7 +178,14 @@ void Executor::advance_to(Instant now) {
   now_ = now;
 }
 
+void Executor::prepare_at_rest() {
+  if (stage_ != Stage::Idle || held_) return;
+  preparer_.run();
+  refill();
+}
+
 void Executor::prepare() {
+  if (stage_ != Stage::Stepping && stage_ != Stage::Draining) return;
   refill();
   // Where nothing more can be prepared for now, the next interrupt comes first.
   refill_at_ = needs_refill() ? instant_of(next_count()) : kNever;

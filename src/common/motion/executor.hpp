@@ -103,6 +103,8 @@ class Executor {
   /// Fills the free segment places now, as firmware does each time before it plans a block: a block that stands alone
   /// and fits into them ends at rest, whatever is planned behind it.
   void prepare();
+  /// The same at rest, where nothing starts it: a system motion then executes those segments first.
+  void prepare_at_rest();
   /// Next instant at which anything can change for the owner: a segment place becomes free (so the planner may get
   /// room), a threshold is crossed, a block or the motion ends. kNever at rest.
   [[nodiscard]] Instant next_deadline() const;
@@ -171,6 +173,7 @@ class Executor {
   [[nodiscard]] std::int64_t ticks_until(std::int64_t counts) const;
   [[nodiscard]] std::int64_t progress_until(Instant at) const;
   [[nodiscard]] std::int64_t next_count() const;
+  [[nodiscard]] bool has_more_for_free_slots() const;
   [[nodiscard]] bool needs_refill() const;
   /// When the main loop's pass comes that fills what became free at `at`.
   [[nodiscard]] Instant pass_after(Instant at) const;

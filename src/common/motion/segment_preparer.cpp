@@ -50,13 +50,13 @@ void SegmentPreparer::finish_hold() {
   holding_ = false;
 }
 
-void SegmentPreparer::begin_system_motion(bool keeps_block) {
+void SegmentPreparer::begin_system_motion(bool keeps_block, bool ends_block) {
   keeps_block_ = keeps_block;
   system_motion_ = true;
   motion_ended_ = false;
   if (keeps_block && block_is_partial_) kept_steps_ = steps_;
   planner_.profile_changed_ = false;
-  planner_.preparing_ = nullptr;
+  if (!ends_block) planner_.preparing_ = nullptr;
 }
 
 void SegmentPreparer::end_system_motion() {

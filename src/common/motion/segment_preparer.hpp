@@ -64,7 +64,9 @@ class SegmentPreparer {
   void finish_hold();
 
   /// The planner's system motion instead of its queue; `keeps_block` saves a held block for end_system_motion().
-  void begin_system_motion(bool keeps_block);
+  /// `ends_block`: a block of the queue that is under preparation is executed to its end first, and if it is, that was
+  /// the system motion (grblHAL).
+  void begin_system_motion(bool keeps_block, bool ends_block);
   void end_system_motion();
   [[nodiscard]] bool in_system_motion() const { return system_motion_; }
 

@@ -116,7 +116,7 @@ constexpr Personality kUsual = {
                .announces = true,
                .tracks_axes = true,
                .travel = TravelRule::HomedEnvelope,
-               .pull_off_pause = std::chrono::milliseconds{2},
+               .end_pause = std::chrono::milliseconds{2},
                .switch_sees_pulses = true},
     .status = {.when_critical = true, .first_is_overrides = true, .counts_changes = true, .accessories_alone = true},
     .realtime = {.mist_toggle = true,
