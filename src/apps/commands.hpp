@@ -71,6 +71,23 @@ struct SettingsOptions {
 [[nodiscard]] ExitStatus restore_settings(const SettingsOptions& options);
 [[nodiscard]] ExitStatus list_settings_history(const SettingsOptions& options);
 
+struct StatusOptions {
+  std::string machine = kDefaultMachine;
+  bool json = false;
+  bool watch = false;  ///< go on until interrupted
+};
+[[nodiscard]] ExitStatus show_status(const StatusOptions& options);
+
+/// `kerf alarms` and `kerf errors`.
+struct CodesOptions {
+  std::string machine = kDefaultMachine;
+  std::string personality;  ///< Kerf's own tables of this firmware instead of a machine's
+  std::optional<int> code;  ///< explain this one
+  bool errors = false;      ///< errors, not alarms
+  bool json = false;
+};
+[[nodiscard]] ExitStatus list_codes(const CodesOptions& options);
+
 struct ConsoleOptions {
   std::string machine = kDefaultMachine;
   io::RecordingOptions recording{};

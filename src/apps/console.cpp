@@ -15,6 +15,7 @@
 #include "apps/line_editor.hpp"
 #include "apps/output.hpp"
 #include "apps/progress_text.hpp"
+#include "apps/status_text.hpp"
 #include "apps/terminal.hpp"
 #include "common/base/text.hpp"
 #include "io/session_host.hpp"
@@ -79,15 +80,21 @@ class Console {
   void on(const session::LinkSilent& silent) {
     show(fmt::format("The machine has not answered for {:.0f} s: check cable and power.", silent.silent_for_s));
   }
+  void on(const session::LinkAnswering&) { show("The machine answers again."); }
+  void on(const session::PendantTookOver& taken) { show(taken.sentence + " ':take' takes it back."); }
+  void on(const session::PendantReleased&) { show("The pendant has given the machine back."); }
   void on(const session::LineReceived& line) {
+    if (line.for_kerf) return;
     if (!input_ || (line.answers && line.answers->purpose != streaming::Purpose::Operator)) return;
     std::visit([&](const auto& message) { show_message(message, line.raw); }, line.message);
     if (has_ended_ && !std::holds_alternative<protocol::StatusReport>(line.message)) wait_for_last_words();
   }
   void on(const session::LineRefused& refused) {
-    if (refused.purpose == streaming::Purpose::Operator) show("    " + refused.refusal.meaning);
+    if (refused.purpose != streaming::Purpose::Operator) return;
+    show("    " + refused.explanation.headline);
+    show("    " + refused.refusal.meaning);
   }
-  void on(const session::AlarmRaised& alarm) { show(fmt::format("    {}. {}", alarm.title, alarm.text)); }
+  void on(const session::AlarmRaised& alarm) { show_explanation(alarm.explanation); }
   template <typename Other>
   void on(const Other&) {}
 
@@ -107,13 +114,41 @@ class Console {
     show("    " + meaning);
   }
 
+  void show_explanation(const machine::Explanation& explanation) {
+    show("    " + explanation.headline);
+    for (const std::string& line : machine::details_of(explanation)) show("    " + line);
+  }
+
+  /// Lines that begin with a colon are for Kerf.
+  bool obey_kerf_word(std::string_view line) {
+    if (line == ":take") {
+      host_->submit(session::TakeControl{});
+    } else if (line == ":why") {
+      const auto explanation = host_->session().alarm_explanation();
+      if (explanation) return show_explanation(*explanation), true;
+      show("The machine is not in alarm.");
+    } else if (line == ":status") {
+      const session::Session& session = host_->session();
+      for (const std::string& row : status_lines({.firmware = {},
+                                                  .machine = session.snapshot(),
+                                                  .link = session.link_health(loop_.now()),
+                                                  .alarm = session.alarm_explanation()})) {
+        show(row);
+      }
+    } else {
+      return false;
+    }
+    return true;
+  }
+
   void begin() {
     if (input_) return;
     const InputCallbacks callbacks{.line = [this](std::string_view line) { send(line); },
                                    .realtime_key = [this](char key) { press(key); },
                                    .ended = [this] { end(); }};
     if (is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO)) {
-      put("At the start of a line ? ! ~ and Ctrl-X act at once. Ctrl-D leaves.\n");
+      put("At the start of a line ? ! ~ and Ctrl-X act at once. :status, :why and :take are for Kerf. Ctrl-D "
+          "leaves.\n");
       input_ = make_line_editor(loop_, "> ", history_file(), callbacks);
     } else {
       input_ = make_plain_reader(loop_, callbacks);
@@ -121,7 +156,7 @@ class Console {
   }
 
   void send(std::string_view line) {
-    host_->submit(session::SendLine{std::string(line)});
+    if (!obey_kerf_word(line)) host_->submit(session::SendLine{std::string(line)});
     if (has_ended_) wait_for_last_words();
   }
 

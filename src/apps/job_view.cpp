@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -35,9 +36,11 @@ class Pace {
   SteadyClock::time_point next_{};
 };
 
-std::string alarm_sentence(const session::AlarmRaised& alarm) {
-  return fmt::format("ALARM {}: {}{}{}", alarm.code, alarm.title, alarm.title.empty() || alarm.text.empty() ? "" : ". ",
-                     alarm.text);
+/// The headline, then what shows it and what to do, indented.
+std::vector<std::string> alarm_lines(const session::AlarmRaised& alarm) {
+  std::vector<std::string> lines{alarm.explanation.headline};
+  for (const std::string& detail : machine::details_of(alarm.explanation)) lines.push_back("  " + detail);
+  return lines;
 }
 
 std::string started_sentence(const job::JobState& job) {
@@ -62,7 +65,9 @@ class TerminalView final : public JobView {
     draw();
   }
 
-  void alarm_raised(const session::AlarmRaised& alarm) override { line(alarm_sentence(alarm)); }
+  void alarm_raised(const session::AlarmRaised& alarm) override {
+    for (const std::string& text : alarm_lines(alarm)) line(text);
+  }
   void asked(std::string_view question) override {
     erase();
     question_ = question;
@@ -138,7 +143,9 @@ class LineView final : public JobView {
     line(progress_line(job, snapshot));
   }
 
-  void alarm_raised(const session::AlarmRaised& alarm) override { line(alarm_sentence(alarm)); }
+  void alarm_raised(const session::AlarmRaised& alarm) override {
+    for (const std::string& text : alarm_lines(alarm)) line(text);
+  }
   void asked(std::string_view question) override { line(question); }
 
   void ended(const job::JobState& job, const machine::Snapshot& snapshot, ExitStatus status) override {
@@ -185,7 +192,11 @@ class JsonView final : public JobView {
   }
 
   void alarm_raised(const session::AlarmRaised& alarm) override {
-    emit({{"event", "alarm"}, {"code", alarm.code}, {"title", alarm.title}, {"text", alarm.text}});
+    emit({{"event", "alarm"},
+          {"code", alarm.code},
+          {"title", alarm.title},
+          {"text", alarm.text},
+          {"explanation", io::to_json(alarm.explanation)}});
   }
   void asked(std::string_view question) override { noted(question); }
 

@@ -168,13 +168,45 @@ void add_describe(CLI::App& kerf, Chosen& chosen) {
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::describe_machine(*options); }; });
 }
 
+void add_status(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::StatusOptions>();
+  CLI::App* command = kerf.add_subcommand("status", "Say what the machine is doing: state, position, inputs, alarms");
+  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  command->add_flag("-w,--watch", options->watch,
+                    "Go on until Ctrl-C: one line on a terminal, else one JSON object a line for each change");
+  command->add_flag("--json", options->json, "Print everything that is known as JSON");
+  command->footer("\nExit status 4: the machine is in alarm. 'kerf status' asks and changes nothing.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::show_status(*options); }; });
+}
+
+void add_codes(CLI::App& kerf, Chosen& chosen, bool errors) {
+  auto options = std::make_shared<kerf::apps::CodesOptions>();
+  options->errors = errors;
+  CLI::App* command = errors ? kerf.add_subcommand("errors", "List what the numbers behind 'error:' mean")
+                             : kerf.add_subcommand("alarms", "List what the numbers behind 'ALARM:' mean");
+  command->add_option("CODE", options->code, "Explain this one, and say what to do")->type_name("");
+  CLI::Option* machine =
+      command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  command
+      ->add_option("-p,--personality", options->personality,
+                   "Ask no machine, but Kerf's own tables: " + kerf::firmware::personality_names())
+      ->type_name("NAME")
+      ->excludes(machine);
+  command->add_flag("--json", options->json, "Print JSON");
+  command->footer(errors ? "\nExample: kerf errors 20 --personality grbl\n"
+                         : "\nExample: kerf alarms 2 --personality grbl\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::list_codes(*options); }; });
+}
+
 void add_console(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::ConsoleOptions>();
   CLI::App* command = kerf.add_subcommand("console", "Type to a controller; answers come with their meaning");
   add_machine(*command, options->machine, options->recording);
   command->footer(
       "\nAt the start of a line these keys act at once: ? status, ! feed hold, ~ cycle start, Ctrl-X reset.\n"
-      "Arrow up brings back earlier lines; Ctrl-D leaves.\n");
+      "Arrow up brings back earlier lines; Ctrl-D leaves.\n"
+      "For Kerf itself: :status says everything that is known, :why explains the alarm, :take takes the machine back\n"
+      "from a pendant.\n");
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::console(*options); }; });
 }
 
@@ -409,6 +441,9 @@ int start(int argc, char** argv) {
   add_run(kerf, chosen);
   add_virtual(kerf, chosen);
   add_describe(kerf, chosen);
+  add_status(kerf, chosen);
+  add_codes(kerf, chosen, false);
+  add_codes(kerf, chosen, true);
   add_console(kerf, chosen);
   add_settings(kerf, chosen);
   add_ports(kerf, chosen);

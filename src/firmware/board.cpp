@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/vocabulary/travel.hpp"
+
 namespace kerf::firmware {
 
 using gcode::StoredOffset;
@@ -30,34 +32,16 @@ AxisValues& offset_of(gcode::Offsets& offsets, StoredOffset which) {
 /// More than any planner holds (grblHAL $398 goes to 1000).
 constexpr std::size_t kMostBlocks = 1024;
 
-/// Where an axis may go, counted from its homed position.
-struct Travel {
-  float min = 0;
-  float max = 0;
-};
-
-/// gnea/grbl system.c: negative space. Rabbit mirrors axes that home towards minus; grblHAL keeps the pull-off distance
-/// when hard limits are on, and puts zero at the switch with `$22` bit 3 (machine_limits.c).
-Travel travel_of(const Board& board, int axis) {
-  const auto length = static_cast<float>(board.settings.number(setting::kMaxTravel, axis));
-  const bool homes_to_minus = board.settings.flag(setting::kHomingDirection, static_cast<unsigned>(axis));
-  switch (board.personality.homing.travel) {
-    case TravelRule::MirroredByDirection: {
-      const float at = board.switch_position_mm(axis);
-      return homes_to_minus ? Travel{.min = at, .max = at + length} : Travel{.min = at - length, .max = at};
-    }
-    case TravelRule::HomedEnvelope: {
-      const float pull_off = board.settings.flag(setting::kHardLimits)
-                                 ? static_cast<float>(board.settings.number(setting::kHomingPullOff))
-                                 : 0.0F;
-      if (!board.settings.flag(setting::kHoming, homing_bit::kOriginZero)) {
-        return {.min = -length + pull_off, .max = -pull_off};
-      }
-      return homes_to_minus ? Travel{.min = 0, .max = length - pull_off} : Travel{.min = -length + pull_off, .max = 0};
-    }
-    case TravelRule::NegativeSpace: break;
-  }
-  return {.min = -length, .max = 0};
+vocabulary::Travel travel_of(const Board& board, int axis) {
+  const auto& settings = board.settings;
+  const bool has_hard_limits = settings.flag(setting::kHardLimits);
+  return vocabulary::travel_of(
+      vocabulary::travel_rule_of(board.personality.dialect().firmware),
+      {.length_mm = static_cast<float>(settings.number(setting::kMaxTravel, axis)),
+       .homes_to_minus = settings.flag(setting::kHomingDirection, static_cast<unsigned>(axis)),
+       .switch_at_mm = board.switch_position_mm(axis),
+       .pull_off_mm = has_hard_limits ? static_cast<float>(settings.number(setting::kHomingPullOff)) : 0.0F,
+       .zero_at_switch = settings.flag(setting::kHoming, homing_bit::kOriginZero)});
 }
 
 bool is_guarded(const Board& board, int axis) {
@@ -233,9 +217,9 @@ float Board::switch_position_mm(int axis) const {
 bool Board::is_within_travel(const AxisValues& target_mm) const {
   for (int axis = 0; axis < settings.axes(); ++axis) {
     if (!is_guarded(*this, axis)) continue;
-    const Travel travel = travel_of(*this, axis);
+    const vocabulary::Travel travel = travel_of(*this, axis);
     const float target = target_mm.at(static_cast<std::size_t>(axis));
-    if (target < travel.min || target > travel.max) return false;
+    if (target < travel.min_mm || target > travel.max_mm) return false;
   }
   return true;
 }
@@ -248,8 +232,8 @@ AxisValues Board::clipped_to_travel(const AxisValues& target_mm) const {
     const auto at = static_cast<std::size_t>(axis);
     const float distance = target_mm.at(at) - from.at(at);
     if (!is_guarded(*this, axis) || distance == 0.0F) continue;
-    const Travel travel = travel_of(*this, axis);
-    const float end = std::clamp(target_mm.at(at), travel.min, travel.max);
+    const vocabulary::Travel travel = travel_of(*this, axis);
+    const float end = std::clamp(target_mm.at(at), travel.min_mm, travel.max_mm);
     part = std::min(part, std::max(0.0F, (end - from.at(at)) / distance));
   }
   AxisValues clipped = target_mm;
@@ -262,8 +246,8 @@ AxisValues Board::clipped_to_travel(const AxisValues& target_mm) const {
 
 float Board::within_travel(int axis, float mm) const {
   if (((homed >> static_cast<unsigned>(axis)) & 1U) == 0 || settings.number(setting::kMaxTravel, axis) <= 0) return mm;
-  const Travel travel = travel_of(*this, axis);
-  return std::clamp(mm, travel.min, travel.max);
+  const vocabulary::Travel travel = travel_of(*this, axis);
+  return std::clamp(mm, travel.min_mm, travel.max_mm);
 }
 
 Dwell Board::delay_step(int delay_setting) const {

@@ -35,6 +35,7 @@ class SessionHost {
   [[nodiscard]] bool is_open() const { return is_open_; }
   /// The file in which the connection is recorded; empty if in none.
   [[nodiscard]] const std::string& log_path() const { return log_.path(); }
+  [[nodiscard]] Instant now() const { return loop_.now(); }
 
  private:
   void on_lost(const TransportError& error);

@@ -37,7 +37,7 @@ WorldOptions network_world(vocabulary::Firmware firmware, Duration latency) {
 
 World::World(const WorldOptions& options)
     : options_(options),
-      rig_(firmware::VirtualController(firmware::personality_of(options.firmware), options.stored)),
+      rig_(firmware::VirtualController(firmware::personality_of(options.firmware), options.stored, options.equipment)),
       session_(options.session),
       to_controller_(options.wire, WireGrain::Byte),
       from_controller_(options.wire, WireGrain::Line) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
+#include "firmware/equipment.hpp"
 #include "firmware/rig.hpp"
 #include "firmware/stored_state.hpp"
 #include "firmware/virtual_controller.hpp"
@@ -24,6 +25,7 @@ namespace kerf::simulation {
 struct WorldOptions {
   vocabulary::Firmware firmware = vocabulary::Firmware::GrblHal;
   firmware::StoredState stored;
+  firmware::Equipment equipment;
   WireTiming wire;
   session::SessionOptions session;
   /// Opening the port restarts the controller, as DTR does to an Uno.

@@ -79,13 +79,16 @@ struct RecallSettings {
   std::string since;
 };
 
+/// 0x8B: takes the machine back from a pendant, where the controller hears this link meanwhile.
+struct TakeControl {};
+
 using Command = std::variant<StartJob, HoldJob, ResumeJob, StopJob, AbortJob, SendLine, SendRealtime, Unlock, Home, Jog,
-                             CancelJog, SoftReset, ChangeSettings, RecallSettings>;
+                             CancelJog, SoftReset, ChangeSettings, RecallSettings, TakeControl>;
 
 /// The names under which commands are written down, in the order of the variant.
 inline constexpr std::array<std::string_view, std::variant_size_v<Command>> kCommandNames{
-    "StartJob", "HoldJob", "ResumeJob", "StopJob",   "AbortJob",  "SendLine",       "SendRealtime",
-    "Unlock",   "Home",    "Jog",       "CancelJog", "SoftReset", "ChangeSettings", "RecallSettings",
+    "StartJob", "HoldJob", "ResumeJob", "StopJob",   "AbortJob",       "SendLine",       "SendRealtime", "Unlock",
+    "Home",     "Jog",     "CancelJog", "SoftReset", "ChangeSettings", "RecallSettings", "TakeControl",
 };
 static_assert(!kCommandNames.back().empty(), "name the new command here, in the order of the variant");
 
@@ -104,6 +107,7 @@ BOOST_DESCRIBE_STRUCT(CancelJog, (), ())
 BOOST_DESCRIBE_STRUCT(SoftReset, (), ())
 BOOST_DESCRIBE_STRUCT(ChangeSettings, (), (settings, reason))
 BOOST_DESCRIBE_STRUCT(RecallSettings, (), (settings, since))
+BOOST_DESCRIBE_STRUCT(TakeControl, (), ())
 
 /// Why a command was not obeyed.
 enum class Refused {
@@ -119,8 +123,12 @@ enum class Refused {
   RealtimeInLine,    ///< `?`, `!`, `~` or a byte that is not ASCII text
   SettingsUnderWay,  ///< settings are being changed
   NeverSent,         ///< would desynchronise or crash the controller (protocol.md 11, rule 15)
+  NotAnswering,      ///< the controller has been silent for a while
+  NoPendant,         ///< there is no control to take back
+  ControlNotGiven,   ///< the controller does not give control back on this link
 };
 BOOST_DESCRIBE_ENUM(Refused, NotConnected, NotIdentified, PendantInControl, MachineNotIdle, MachineInAlarm, JobUnderWay,
-                    NoJob, NotAtRest, LineTooLong, RealtimeInLine, SettingsUnderWay, NeverSent)
+                    NoJob, NotAtRest, LineTooLong, RealtimeInLine, SettingsUnderWay, NeverSent, NotAnswering, NoPendant,
+                    ControlNotGiven)
 
 }  // namespace kerf::session

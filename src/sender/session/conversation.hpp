@@ -24,6 +24,8 @@ struct ReplyTable {
   std::string status = "<Idle|MPos:0.000,0.000,0.000|FS:0,0|WCO:0.000,0.000,0.000>\r\n";
   /// Answer to 0x87; empty: the byte is dropped.
   std::string full_status;
+  /// Answer to 0x83; empty: the byte is dropped.
+  std::string parser_report;
   /// Answer to 0x18; empty: no reset.
   std::string welcome;
   bool answers_lines = true;
@@ -32,6 +34,7 @@ struct ReplyTable {
   [[nodiscard]] std::string reply_to_byte(char byte) const {
     if (byte == '?') return answers_status ? status : "";
     if (byte == '\x87') return full_status;
+    if (byte == '\x83') return parser_report;
     if (byte == '\x18') return welcome;
     return {};
   }
@@ -86,6 +89,7 @@ inline ReplyTable grblhal_replies() {
       "110\tX-axis maximum rate\tmm/min\tfloat\t#####0.000\tMaximum rate.\t\t\t0\t0\r\nok\r\n";
   table.lines["$SPINDLESH"] = "[SPINDLE:0|0|0|*DRV|PWM|0.0,1000.0]\r\nok\r\n";
   table.full_status = "<Idle|MPos:0.000,0.000,0.000|Bf:100,1023|FS:0,0|WCO:0.000,0.000,0.000|MPG:0|FW:grblHAL>\r\n";
+  table.parser_report = "[GC:G0 G54 G17 G21 G90 G94 G49 G98 G50 M5 M9 T0 F0 S0.]\r\n";
   table.welcome = "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n";
   return table;
 }

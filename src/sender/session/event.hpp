@@ -12,6 +12,7 @@
 
 #include "common/protocol/message.hpp"
 #include "sender/job/job_state.hpp"
+#include "sender/machine/explanation.hpp"
 #include "sender/machine/handshake.hpp"
 #include "sender/machine/snapshot.hpp"
 #include "sender/session/command.hpp"
@@ -33,6 +34,8 @@ struct LineReceived {
   protocol::Message message;
   std::string raw;
   std::optional<streaming::OwedLine> answers;
+  /// Belongs to a question that Kerf asked on its own account.
+  bool for_kerf = false;
 };
 
 /// The handshake is under way, in one sentence.
@@ -94,8 +97,9 @@ struct AlarmRaised {
   int code = 0;
   std::string title;
   std::string text;
+  machine::Explanation explanation;
 };
-BOOST_DESCRIBE_STRUCT(AlarmRaised, (), (code, title, text))
+BOOST_DESCRIBE_STRUCT(AlarmRaised, (), (code, title, text, explanation))
 
 /// An `error:` to a line. For a job line also the job's state tells it.
 struct LineRefused {
@@ -103,8 +107,9 @@ struct LineRefused {
   job::Refusal refusal;
   /// A repeat of the first error by a controller that latches (protocol.md 6.4): the line was not executed.
   bool latched_repeat = false;
+  machine::Explanation explanation;
 };
-BOOST_DESCRIBE_STRUCT(LineRefused, (), (purpose, refusal, latched_repeat))
+BOOST_DESCRIBE_STRUCT(LineRefused, (), (purpose, refusal, latched_repeat, explanation))
 
 struct JobStarted {
   std::string program;
@@ -139,6 +144,16 @@ BOOST_DESCRIBE_STRUCT(LinkSilent, (), (silent_for_s))
 struct LinkAnswering {};
 BOOST_DESCRIBE_STRUCT(LinkAnswering, (), ())
 
+/// A pendant has taken the machine: from now on only hold, stop and reset are obeyed.
+struct PendantTookOver {
+  std::string sentence;
+};
+BOOST_DESCRIBE_STRUCT(PendantTookOver, (), (sentence))
+
+/// The pendant has given the machine back; Kerf asks for everything that it may have changed.
+struct PendantReleased {};
+BOOST_DESCRIBE_STRUCT(PendantReleased, (), ())
+
 /// A setting was written and read back, `step` of `steps`.
 struct SettingWritten {
   machine::SettingDifference setting;
@@ -163,6 +178,6 @@ BOOST_DESCRIBE_STRUCT(SettingsDrifted, (), (differences, sentence))
 using Event = std::variant<LineSent, LineReceived, HandshakeNoted, ControllerReset, ControllerBusy, ControllerFound,
                            HandshakeFailed, StatusReported, ControllerRestarted, LinesLost, AlarmRaised, LineRefused,
                            JobStarted, JobProgressed, JobEnded, CommandRefused, LinkSilent, LinkAnswering,
-                           SettingWritten, SettingsChanged, SettingsDrifted>;
+                           SettingWritten, SettingsChanged, SettingsDrifted, PendantTookOver, PendantReleased>;
 
 }  // namespace kerf::session

@@ -1,8 +1,7 @@
 #include "sender/session/refusals.hpp"
 
-#include <algorithm>
-
 #include "common/base/text.hpp"
+#include "common/vocabulary/realtime.hpp"
 
 namespace kerf::session {
 
@@ -10,7 +9,9 @@ std::string sentence_of(Refused reason) {
   switch (reason) {
     case Refused::NotConnected: return "No controller is connected; open a link first.";
     case Refused::NotIdentified: return "The controller is not known yet; wait until the connection is complete.";
-    case Refused::PendantInControl: return "A pendant has the machine; release it there first.";
+    case Refused::PendantInControl:
+      return "A pendant has the machine: release it there, or take control back. Hold, stop and reset still work, as "
+             "far as the controller hears this link.";
     case Refused::MachineNotIdle: return "The machine is not idle; wait until it stands still, or stop it.";
     case Refused::MachineInAlarm: return "The machine is in alarm; find the cause, then unlock, home or reset it.";
     case Refused::JobUnderWay: return "A job is under way; stop it first.";
@@ -21,20 +22,34 @@ std::string sentence_of(Refused reason) {
       return "The line holds a character that a controller would obey at once (?, !, ~) or that is not plain ASCII.";
     case Refused::SettingsUnderWay: return "Settings are being changed; wait until that is done.";
     case Refused::NeverSent: return "This is known to crash or confuse controllers and is never sent.";
+    case Refused::NotAnswering:
+      return "The machine does not answer; wait until it does, or check cable and power. Hold, stop and reset are sent "
+             "all the same.";
+    case Refused::NoPendant: return "No pendant has the machine; there is nothing to take back.";
+    case Refused::ControlNotGiven: return "This controller does not give control back on request.";
   }
   return "The command cannot be obeyed now.";
-}
-
-bool holds_realtime_bytes(std::string_view line) {
-  return std::ranges::any_of(line, [](char letter) {
-    const bool printable = letter >= ' ' && letter <= '~';
-    return !printable || letter == '?' || letter == '!' || letter == '~';
-  });
 }
 
 bool crashes_controller(std::string_view line) {
   const std::string_view text = base::trim(line);
   return base::iequals(text, "$RST") || base::iequals(text, "$FF");
+}
+
+bool stops_or_asks(unsigned char byte) {
+  switch (static_cast<vocabulary::Realtime>(byte)) {
+    case vocabulary::Realtime::StatusQuery:
+    case vocabulary::Realtime::StatusQueryAlternate:
+    case vocabulary::Realtime::FullStatus:
+    case vocabulary::Realtime::ParserReport:
+    case vocabulary::Realtime::FeedHold:
+    case vocabulary::Realtime::FeedHoldAlternate:
+    case vocabulary::Realtime::SafetyDoor:
+    case vocabulary::Realtime::JogCancel:
+    case vocabulary::Realtime::Stop:
+    case vocabulary::Realtime::SoftReset: return true;
+    default: return false;
+  }
 }
 
 bool is_never_sent(unsigned char byte) {

@@ -11,9 +11,8 @@ namespace kerf::session {
 /// One sentence: what was refused and what to do.
 [[nodiscard]] std::string sentence_of(Refused reason);
 
-/// A line that would be taken for realtime commands or holds bytes that no controller stores (protocol.md 2, 11 rule
-/// 3).
-[[nodiscard]] bool holds_realtime_bytes(std::string_view line);
+/// A realtime byte that makes nothing move and switches nothing on: allowed while a pendant has the machine.
+[[nodiscard]] bool stops_or_asks(unsigned char byte);
 
 /// `$RST` and `$FF` without a value crash grblHAL (protocol.md 11, rule 15).
 [[nodiscard]] bool crashes_controller(std::string_view line);

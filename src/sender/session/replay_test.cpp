@@ -79,8 +79,8 @@ TEST(Replay, SaysWhereItLeavesTheLog) {
 }
 
 TEST(Replay, ABitOfTheMachinesThatIsMissingShows) {
-  const auto stop = replay_text(replaced(recorded(), "[GC:G0", "[GC_G0"));
-  EXPECT_FALSE(stop) << "Kerf does not decide by the parser state: " << sentence_of(*stop);
+  const auto stop = replay_text(replaced(recorded(), "[G54:1.000", "[G54:1.001"));
+  EXPECT_FALSE(stop) << "Kerf does not decide by an offset: " << sentence_of(*stop);
   const auto refused = replay_text(replaced(recorded(), "ENUMS,", "XNUMS,"));
   ASSERT_TRUE(refused);
   EXPECT_EQ(refused->end, ReplayEnd::Different);

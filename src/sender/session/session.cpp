@@ -5,6 +5,7 @@
 
 #include "common/base/overloaded.hpp"
 #include "sender/machine/lexicon.hpp"
+#include "sender/machine/rest.hpp"
 
 namespace kerf::session {
 namespace {
@@ -18,16 +19,8 @@ using vocabulary::Realtime;
 /// Before anything is known: less than the smallest receive buffer, one line at a time.
 constexpr std::size_t kCautiousWindow = 80;
 constexpr Duration kResetPatience = 3s;
-/// A report is about 100 bytes: 5 a second take a tenth of 115200 baud and leave the rest to the job.
-constexpr Duration kPollSerial = 200ms;
-constexpr Duration kPollFast = 100ms;
-constexpr int kFastBaud = 230400;
 /// Its answer proves that all motion has ended, because a dwell waits for the planner (protocol.md 6.5).
 constexpr std::string_view kSyncLine = "G4P0";
-
-Duration poll_period(const streaming::LinkPace& link) {
-  return link.baud && *link.baud < kFastBaud ? kPollSerial : kPollFast;
-}
 
 streaming::SoloPolicy solo_policy_of(vocabulary::Firmware firmware) {
   switch (firmware) {
@@ -55,6 +48,11 @@ void Session::on_open(Instant now) {
   settings_change_.reset();
   recalled_.reset();
   settings_drift_.clear();
+  refresh_.forget();
+  pendant_.forget();
+  incidents_.forget();
+  incidents_.clear_alarm();
+  parser_report_asked_ = automatic_reports_asked_ = false;
   handshake_.on_open(now);
   settle_everything(now);
 }
@@ -68,6 +66,8 @@ void Session::on_closed(Instant now, LinkLoss) {
     streamer_.drop_queued(purpose);
   }
   poller_.stop();
+  refresh_.forget();
+  pendant_.forget();
   reset_pending_until_.reset();
   handshake_.on_closed();
   if (has_job()) job_->on_link_closed(now);
@@ -87,16 +87,19 @@ void Session::on_bytes(Instant now, std::string_view bytes) {
 
 void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
   const MachineState before = snapshot().state;
+  std::optional<machine::Snapshot> before_alarm;
+  if (std::holds_alternative<protocol::AlarmRaised>(received.message)) before_alarm = snapshot();
+  const bool for_kerf = is_for_kerf(received.message);
   model_.fold(now, received.message);
   std::optional<streaming::OwedLine> answers;
   if (protocol::is_answer(received.message) && !reset_pending_until_) answers = streamer_.settle();
-  tell(LineReceived{.message = received.message, .raw = received.raw, .answers = answers});
+  tell(LineReceived{.message = received.message, .raw = received.raw, .answers = answers, .for_kerf = for_kerf});
   std::visit(base::Overloaded{
                  [&](const protocol::Ok&) { on_answer(now, answers, 0); },
                  [&](const protocol::ErrorAnswer& error) { on_answer(now, answers, error.code); },
                  [&](const protocol::StatusReport&) { on_report(now, before); },
                  [&](const protocol::Welcome&) { on_welcome(now); },
-                 [&](const protocol::AlarmRaised& alarm) { on_alarm(now, alarm.code); },
+                 [&](const protocol::AlarmRaised& alarm) { on_alarm(now, alarm.code, *before_alarm); },
                  [&](const protocol::SettingValue& setting) {
                    const auto id = handshake_.collector().id_of(setting.id);
                    if (changes_settings() && id == setting.id) settings_change_->on_value(id, setting.value);
@@ -109,7 +112,11 @@ void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
 
 void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code) {
   if (!line) return;
-  if (error_code == 0) model_.on_line_accepted(line->text);
+  if (error_code == 0) {
+    model_.on_line_accepted(line->text);
+    incidents_.on_accepted(*line);
+  }
+  if (line->purpose != Purpose::Question) refresh_.on_change(now);
   std::string meaning;
   if (error_code != 0) {
     const auto& known = handshake_.collector();
@@ -141,16 +148,27 @@ void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& l
   tell(LineRefused{
       .purpose = line->purpose,
       .refusal = {.file_line = line->file_line, .text = line->text, .code = error_code, .meaning = std::move(meaning)},
-      .latched_repeat = latched_repeat});
+      .latched_repeat = latched_repeat,
+      .explanation = explain(incidents_.refused(error_code, *line, snapshot()))});
   // Otherwise the next line would be refused on behalf of this one (protocol.md 6.4).
+  const bool is_own_question = line->purpose == Purpose::Question && is_ready();
   const bool by_hand = line->purpose == Purpose::Operator || line->purpose == Purpose::Setting;
-  if (by_hand && handshake_.collector().dialect().error_latch) {
+  if ((by_hand || is_own_question) && dialect().error_latch) {
     streamer_.enqueue(Purpose::ClearLatch, "");
   }
 }
 
 void Session::on_report(Instant now, MachineState before) {
-  if (poller_.on_report(now, snapshot().auto_report_ms > 0)) tell(LinkAnswering{});
+  const ReportFacts facts{
+      .moving = snapshot().state != MachineState::Idle && !machine::is_at_rest(snapshot()),
+      .pendant = snapshot().pendant_in_control,
+      .automatic = std::chrono::milliseconds{options_.automatic_reports ? snapshot().auto_report_ms.value_or(0) : 0}};
+  if (poller_.on_report(now, facts)) {
+    tell(LinkAnswering{});
+    refresh_.on_doubt();
+  }
+  follow_pendant(now);
+  on_alarm_state();
   tell(StatusReported{.before = before, .after = snapshot().state});
   if (changes_settings()) settings_change_->on_report(now, snapshot());
   if (!has_job()) return;
@@ -163,6 +181,8 @@ void Session::on_welcome(Instant now) {
   reset_pending_until_.reset();
   streamer_.pause(false);
   strike_out();
+  if (!asked) model_.on_power_doubt();
+  incidents_.forget();
   if (has_job()) job_->on_welcome(now);
   if (changes_settings()) settings_change_->interrupt("the controller restarted");
   if (!is_ready()) return;
@@ -171,10 +191,11 @@ void Session::on_welcome(Instant now) {
   handshake_.restart(now, asked);
 }
 
-void Session::on_alarm(Instant now, int code) {
+void Session::on_alarm(Instant now, int code, const machine::Snapshot& before) {
   const auto& known = handshake_.collector();
   const auto fact = known.lexicon().alarm(known.dialect(), code);
-  tell(AlarmRaised{.code = code, .title = fact.title, .text = fact.text});
+  incidents_.on_alarm(code, before, ledger(), reset_pending_until_.has_value());
+  tell(AlarmRaised{.code = code, .title = fact.title, .text = fact.text, .explanation = explain(*incidents_.alarm())});
   if (has_job()) job_->on_alarm(now, code, sentence_of(fact));
   // A critical alarm reads no more lines until the reset, and that drops them (protocol.md 4.4).
   if (snapshot().reset_required) strike_out();
@@ -203,6 +224,7 @@ void Session::settle_everything(Instant now) {
   // First what the job says: after a refusal not one line more may leave.
   follow_job(now);
   follow_settings(now);
+  refresh(now);
   pump(now);
 }
 
@@ -216,7 +238,7 @@ void Session::obey_handshake(Instant now, const machine::HandshakeOrder& order) 
                    if (send.byte == static_cast<std::uint8_t>(Realtime::SoftReset))
                      reset_controller(now);
                    else
-                     outbox_.realtime += static_cast<char>(send.byte);
+                     send_byte(static_cast<Realtime>(send.byte));
                  },
                  [&](const machine::AskLine& ask) { streamer_.enqueue(Purpose::Question, ask.text); },
                  [&](const machine::ForgetQuestions&) {
@@ -233,7 +255,8 @@ void Session::obey_handshake(Instant now, const machine::HandshakeOrder& order) 
                    const auto usable = static_cast<std::size_t>(std::max(capabilities().buffers.rx_usable, 1));
                    streamer_.configure(streaming::window_bytes(usable, options_.link),
                                        solo_policy_of(capabilities().family));
-                   poller_.start(now, poll_period(options_.link));
+                   refresh_.on_change(now);
+                   poller_.start(now, poll_periods(options_.link));
                    tell(ControllerFound{success.sentence});
                    tell_drift();
                  },
@@ -279,20 +302,6 @@ void Session::pump(Instant now) {
   }
 }
 
-void Session::poll(Instant now) {
-  if (!is_ready() || snapshot().pendant_in_control) return;
-  // An AVR that stores loses what it receives meanwhile (protocol.md 6.5).
-  if (changes_settings() && settings_change_->is_storing()) return;
-  if (poller_.is_due(now)) {
-    send_byte(Realtime::StatusQuery);
-    poller_.on_asked(now);
-  }
-  const auto silent_for_s = poller_.take_silence(now);
-  // Grbl answers no question while it homes.
-  const bool homes = !streamer_.ledger().empty() && streamer_.ledger().oldest().text.starts_with("$H");
-  if (silent_for_s && !homes) tell(LinkSilent{*silent_for_s});
-}
-
 void Session::advance_to(Instant now) {
   if (!open_) return;
   handshake_.advance_to(now, snapshot());
@@ -303,6 +312,7 @@ void Session::advance_to(Instant now) {
     streamer_.pause(false);
   }
   poll(now);
+  if (pendant_.take_failure(now)) refuse(Refused::ControlNotGiven, not_given_back_sentence(options_.link.network));
   settle_everything(now);
 }
 
@@ -312,9 +322,8 @@ Instant Session::next_deadline() const {
   if (has_job()) deadline = std::min(deadline, job_->next_deadline());
   if (changes_settings()) deadline = std::min(deadline, settings_change_->next_deadline());
   const bool is_storing = changes_settings() && settings_change_->is_storing();
-  const bool polls = is_ready() && !snapshot().pendant_in_control && !is_storing;
-  if (polls) deadline = std::min(deadline, poller_.next_deadline());
-  return deadline;
+  if (is_ready() && !is_storing) deadline = std::min({deadline, poller_.next_deadline(), refresh_.next_deadline()});
+  return std::min(deadline, pendant_.next_deadline());
 }
 
 Outbox Session::take_outbox() {

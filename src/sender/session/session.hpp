@@ -21,7 +21,10 @@
 #include "sender/machine/snapshot.hpp"
 #include "sender/session/command.hpp"
 #include "sender/session/event.hpp"
+#include "sender/session/incidents.hpp"
+#include "sender/session/pendant_watch.hpp"
 #include "sender/session/settings_change.hpp"
+#include "sender/session/state_refresh.hpp"
 #include "sender/session/status_poller.hpp"
 #include "sender/streaming/streamer.hpp"
 #include "sender/streaming/window.hpp"
@@ -36,9 +39,11 @@ struct SessionOptions {
   ResetPolicy reset_policy = ResetPolicy::WhenSilentOrIdle;
   /// Ask for the enumerations (`$EA` …) where the controller has them; `false` makes connecting faster.
   bool enumerate = true;
+  /// Have the controller report by itself where it is set up to (grblHAL `$481`); else it is asked.
+  bool automatic_reports = true;
 };
 // Complete, because a log that lacks an option cannot be replayed.
-BOOST_DESCRIBE_STRUCT(SessionOptions, (), (link, reset_policy, enumerate))
+BOOST_DESCRIBE_STRUCT(SessionOptions, (), (link, reset_policy, enumerate, automatic_reports))
 
 /// Why the link went away.
 enum class LinkLoss { Closed, Unplugged, TimedOut, Error };
@@ -74,6 +79,10 @@ class Session {
   [[nodiscard]] SessionPhase phase() const;
   [[nodiscard]] const machine::Snapshot& snapshot() const { return model_.snapshot(); }
   [[nodiscard]] const machine::Capabilities& capabilities() const { return handshake_.capabilities(); }
+  /// How the link answers right now.
+  [[nodiscard]] LinkHealth link_health(Instant now) const;
+  /// Why the machine is in alarm; empty while it is not.
+  [[nodiscard]] std::optional<machine::Explanation> alarm_explanation() const;
   /// The job under way, or the last one; empty before the first.
   [[nodiscard]] const std::optional<job::JobState>& job() const { return job_state_; }
   /// What was not as at the last connection (RecallSettings), for the rest of this one.
@@ -88,7 +97,9 @@ class Session {
   void on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code);
   void on_report(Instant now, vocabulary::MachineState before);
   void on_welcome(Instant now);
-  void on_alarm(Instant now, int code);
+  void on_alarm(Instant now, int code, const machine::Snapshot& before);
+  void on_alarm_state();
+  void follow_pendant(Instant now);
 
   void obey(Instant now, const StartJob& command);
   void obey(Instant now, const HoldJob& command);
@@ -104,8 +115,10 @@ class Session {
   void obey(Instant now, const SoftReset& command);
   void obey(Instant now, const ChangeSettings& command);
   void obey(Instant now, const RecallSettings& command);
-  [[nodiscard]] std::optional<Refused> why_no_line(std::string_view text) const;
-  [[nodiscard]] std::optional<Refused> why_no_job() const;
+  void obey(Instant now, const TakeControl& command);
+  [[nodiscard]] std::optional<Refused> why_no_line(Instant now, std::string_view text) const;
+  [[nodiscard]] std::optional<std::string> why_text_is_eaten(std::string_view text) const;
+  [[nodiscard]] std::optional<Refused> why_no_job(Instant now) const;
   [[nodiscard]] std::size_t longest_line_taken() const;
   void refuse(Refused reason, std::string detail = {});
 
@@ -120,10 +133,19 @@ class Session {
   [[nodiscard]] std::vector<std::string> settings_queries() const;
   void pump(Instant now);
   void poll(Instant now);
+  void ask_for_reports(Instant now);
+  void refresh(Instant now);
+  void obey_refresh(RefreshOrder order);
+  [[nodiscard]] bool may_be_silent() const;
+  [[nodiscard]] bool is_for_kerf(const protocol::Message& message);
+  [[nodiscard]] bool text_under_way() const;
+  [[nodiscard]] machine::MachineKnowledge knowledge() const;
+  [[nodiscard]] machine::Explanation explain(const machine::Incident& incident) const;
   void reset_controller(Instant now);
   void strike_out();
   void tell(Event event) { outbox_.events.push_back(std::move(event)); }
-  void send_byte(vocabulary::Realtime byte) { outbox_.realtime += static_cast<char>(byte); }
+  void send_byte(vocabulary::Realtime byte);
+  [[nodiscard]] const vocabulary::Dialect& dialect() const { return handshake_.collector().dialect(); }
   [[nodiscard]] bool is_ready() const { return phase() == SessionPhase::Ready; }
   [[nodiscard]] bool changes_settings() const { return settings_change_ && !settings_change_->is_over(); }
   [[nodiscard]] bool has_job() const { return job_ && !job::is_final(job_->state().phase); }
@@ -136,6 +158,13 @@ class Session {
   machine::Handshake handshake_;
   streaming::Streamer streamer_;
   StatusPoller poller_;
+  StateRefresh refresh_;
+  PendantWatch pendant_;
+  Incidents incidents_;
+  /// 0x83 is out: the next `[GC:]` is for Kerf.
+  bool parser_report_asked_ = false;
+  /// 0x8C went out once; it toggles, so never twice.
+  bool automatic_reports_asked_ = false;
   std::optional<job::Job> job_;
   std::optional<job::JobState> job_state_;
   std::optional<SettingsChange> settings_change_;

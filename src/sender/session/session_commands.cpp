@@ -7,6 +7,7 @@
 
 #include "common/base/text.hpp"
 #include "sender/job/wire_form.hpp"
+#include "sender/machine/realtime_alphabet.hpp"
 #include "sender/machine/rest.hpp"
 #include "sender/session/program_lines.hpp"
 #include "sender/session/refusals.hpp"
@@ -39,19 +40,20 @@ std::size_t Session::longest_line_taken() const {
   return static_cast<std::size_t>(std::max(1, std::min(buffers.line_length, buffers.rx_usable - 1)));
 }
 
-std::optional<Refused> Session::why_no_job() const {
-  if (!is_ready()) return Refused::NotIdentified;
+std::optional<Refused> Session::why_no_job(Instant now) const {
   if (snapshot().pendant_in_control) return Refused::PendantInControl;
+  if (!is_ready()) return Refused::NotIdentified;
   if (has_job()) return Refused::JobUnderWay;
   if (changes_settings()) return Refused::SettingsUnderWay;
   if (snapshot().state == MachineState::Alarm) return Refused::MachineInAlarm;
   const bool idle = snapshot().state == MachineState::Idle || snapshot().state == MachineState::Check;
   if (!idle || !snapshot().controller_file.empty()) return Refused::MachineNotIdle;
+  if (poller_.is_silent(now)) return Refused::NotAnswering;
   return std::nullopt;
 }
 
 void Session::obey(Instant now, const StartJob& command) {
-  if (const auto reason = why_no_job()) {
+  if (const auto reason = why_no_job(now)) {
     refuse(*reason);
     return;
   }
@@ -65,6 +67,7 @@ void Session::obey(Instant now, const StartJob& command) {
     return;
   }
   if (dialect.error_latch) streamer_.enqueue(Purpose::ClearLatch, "");
+  incidents_.start_from(snapshot(), dialect);
   streamer_.feed_from(std::make_unique<ProgramLines>(command.program, form));
   job_.emplace(now, *command.program, dialect.error_latch, command.timeline);
   job_state_ = job_->state();
@@ -79,6 +82,10 @@ void Session::obey(Instant now, const HoldJob&) {
 }
 
 void Session::obey(Instant now, const ResumeJob&) {
+  if (snapshot().pendant_in_control) {
+    refuse(Refused::PendantInControl);
+    return;
+  }
   if (!machine::can_resume(snapshot()) || (has_job() && !job_->can_resume())) {
     refuse(Refused::NotAtRest);
     return;
@@ -103,23 +110,31 @@ void Session::obey(Instant now, const AbortJob&) {
     obey(now, SoftReset{});
 }
 
-std::optional<Refused> Session::why_no_line(std::string_view text) const {
-  if (!is_ready()) return Refused::NotIdentified;
+std::optional<Refused> Session::why_no_line(Instant now, std::string_view text) const {
   if (snapshot().pendant_in_control) return Refused::PendantInControl;
+  if (!is_ready()) return Refused::NotIdentified;
   if (has_job()) return Refused::JobUnderWay;
   if (changes_settings()) return Refused::SettingsUnderWay;
   if (snapshot().reset_required) return Refused::MachineInAlarm;
-  if (holds_realtime_bytes(text)) return Refused::RealtimeInLine;
+  if (poller_.is_silent(now) && !may_be_silent()) return Refused::NotAnswering;
+  if (why_text_is_eaten(text)) return Refused::RealtimeInLine;
   if (crashes_controller(text)) return Refused::NeverSent;
   if (text.size() > longest_line_taken()) return Refused::LineTooLong;
   return std::nullopt;
 }
 
-void Session::obey(Instant, const SendLine& command) {
-  if (const auto reason = why_no_line(command.text))
-    refuse(*reason);
-  else
-    streamer_.enqueue(Purpose::Operator, command.text);
+std::optional<std::string> Session::why_text_is_eaten(std::string_view text) const {
+  return machine::why_eaten(text, handshake_.collector().dialect(), snapshot().texts_keep_realtime.value_or(false));
+}
+
+void Session::obey(Instant now, const SendLine& command) {
+  if (const auto reason = why_no_line(now, command.text)) {
+    const bool is_eaten = reason == Refused::RealtimeInLine;
+    refuse(*reason, is_eaten ? why_text_is_eaten(command.text).value_or("") : std::string{});
+    return;
+  }
+  if (streamer_.is_idle() && snapshot().state == MachineState::Idle) incidents_.start_from(snapshot(), dialect());
+  streamer_.enqueue(Purpose::Operator, command.text);
 }
 
 void Session::obey(Instant now, const Unlock&) {
@@ -158,6 +173,11 @@ void Session::obey(Instant now, const SendRealtime& command) {
     refuse(Refused::NeverSent);
     return;
   }
+  const bool takes_control = static_cast<Realtime>(command.byte) == Realtime::MpgModeToggle;
+  if (snapshot().pendant_in_control && !stops_or_asks(command.byte) && !takes_control) {
+    refuse(Refused::PendantInControl);
+    return;
+  }
   switch (static_cast<Realtime>(command.byte)) {
     case Realtime::SoftReset: obey(now, SoftReset{}); return;
     case Realtime::FeedHold: obey(now, HoldJob{}); return;
@@ -175,8 +195,22 @@ void Session::obey(Instant now, const SendRealtime& command) {
       else
         send_byte(Realtime::Stop);
       return;
-    default: outbox_.realtime += static_cast<char>(command.byte); return;
+    case Realtime::MpgModeToggle: obey(now, TakeControl{}); return;
+    default: send_byte(static_cast<Realtime>(command.byte)); return;
   }
+}
+
+void Session::obey(Instant now, const TakeControl&) {
+  if (!snapshot().pendant_in_control) {
+    refuse(Refused::NoPendant);
+    return;
+  }
+  if (!acts_on(dialect().firmware, Realtime::MpgModeToggle)) {
+    refuse(Refused::ControlNotGiven);
+    return;
+  }
+  send_byte(Realtime::MpgModeToggle);
+  pendant_.on_asked_back(now);
 }
 
 }  // namespace kerf::session

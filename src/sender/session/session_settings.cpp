@@ -21,7 +21,7 @@ std::vector<std::string> Session::settings_queries() const {
 }
 
 void Session::obey(Instant now, const ChangeSettings& command) {
-  if (const auto reason = why_no_line("")) {
+  if (const auto reason = why_no_line(now, "")) {
     refuse(*reason);
     return;
   }

@@ -57,6 +57,8 @@ class Ledger {
   [[nodiscard]] std::size_t bytes_in_flight() const { return bytes_; }
   [[nodiscard]] const OwedLine& oldest() const { return owed_.front(); }
   [[nodiscard]] bool owes(Purpose purpose) const;
+  /// Oldest first.
+  [[nodiscard]] const std::deque<OwedLine>& owed() const { return owed_; }
   [[nodiscard]] std::uint64_t lines_entered() const { return entered_; }
   [[nodiscard]] std::uint64_t lines_settled() const { return settled_; }
   [[nodiscard]] std::uint64_t lines_struck_out() const { return struck_out_; }

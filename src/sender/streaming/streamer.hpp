@@ -47,6 +47,8 @@ class Streamer {
   [[nodiscard]] const Ledger& ledger() const { return ledger_; }
   /// The source has given its last line, or there is none.
   [[nodiscard]] bool source_exhausted();
+  /// Nothing is queued, fed or unanswered.
+  [[nodiscard]] bool is_idle() const { return queue_.empty() && !source_ && ledger_.empty(); }
   /// Nothing of `purpose` is queued or unanswered.
   [[nodiscard]] bool done_with(Purpose purpose) const;
 

@@ -1,0 +1,146 @@
+#include "sender/machine/line_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <variant>
+
+#include "common/base/text.hpp"
+#include "common/gcode/rules.hpp"
+#include "common/vocabulary/axis.hpp"
+
+namespace kerf::machine {
+namespace {
+
+using vocabulary::AxisValues;
+
+/// Two roundings of the last digit that controllers print.
+constexpr double kSameOffset = 0.0025;
+
+AxisValues axis_values(const std::vector<double>& values) {
+  AxisValues result{};
+  for (std::size_t axis = 0; axis < std::min(values.size(), result.size()); ++axis) {
+    result[axis] = static_cast<float>(values[axis]);
+  }
+  return result;
+}
+
+/// `[TLO:]` has one number for Z on Grbl and Rabbit.
+AxisValues tool_length_values(const std::vector<double>& values) {
+  constexpr std::size_t kZ = 2;
+  if (values.size() != 1) return axis_values(values);
+  AxisValues result{};
+  result[kZ] = static_cast<float>(values.front());
+  return result;
+}
+
+struct OffsetSlot {
+  std::string_view name;
+  std::size_t index;
+};
+constexpr OffsetSlot kSlots[] = {{"G54", 0}, {"G55", 1},   {"G56", 2},   {"G57", 3},  {"G58", 4},
+                                 {"G59", 5}, {"G59.1", 6}, {"G59.2", 7}, {"G59.3", 8}};
+
+void load_offsets(gcode::Offsets& offsets, const Snapshot& snapshot) {
+  const auto at = [&](std::string_view name) {
+    const auto found = snapshot.offsets_mm.find(std::string{name});
+    return found == snapshot.offsets_mm.end() ? AxisValues{} : axis_values(found->second);
+  };
+  for (const OffsetSlot& slot : kSlots) offsets.work[slot.index] = at(slot.name);
+  offsets.g28 = at("G28");
+  offsets.g30 = at("G30");
+  offsets.g92 = at("G92");
+  if (snapshot.tool_length.offset_mm) offsets.tool_length = tool_length_values(*snapshot.tool_length.offset_mm);
+}
+
+/// Modes that a line of words may set without moving anything.
+std::string mode_line(const ParserModes& modes) {
+  std::string line;
+  for (const std::string* word :
+       {&modes.plane, &modes.units, &modes.distance, &modes.feed_mode, &modes.work_coordinates, &modes.spindle}) {
+    line += *word;
+  }
+  if (modes.motion == "G0" || modes.motion == "G1" || modes.motion == "G80") line += modes.motion;
+  return line;
+}
+
+struct MotionEnd {
+  const AxisValues* operator()(const gcode::LinearMove& move) const { return &move.target_mm; }
+  const AxisValues* operator()(const gcode::ArcMove& move) const { return &move.target_mm; }
+  const AxisValues* operator()(const gcode::ProbeMove& move) const { return &move.target_mm; }
+  const AxisValues* operator()(const auto&) const { return nullptr; }
+};
+
+std::vector<double> vector_of(const AxisValues& values, std::size_t axes) {
+  std::vector<double> result;
+  for (std::size_t axis = 0; axis < axes; ++axis) result.push_back(static_cast<double>(values.at(axis)));
+  return result;
+}
+
+bool agrees(const AxisValues& sum, const std::vector<double>& reported) {
+  for (std::size_t axis = 0; axis < reported.size(); ++axis) {
+    if (std::abs(static_cast<double>(sum.at(axis)) - reported[axis]) > kSameOffset) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void LineTracker::seed(const Snapshot& snapshot, const vocabulary::Dialect& dialect) {
+  interpreter_.reset();
+  if (!snapshot.machine_position_mm || !snapshot.work_offset_mm || snapshot.parser_words.empty()) return;
+  axes_ = std::min(snapshot.machine_position_mm->size(), vocabulary::kMaxAxes);
+  auto& interpreter =
+      interpreter_.emplace(gcode::rules_for(dialect), gcode::InterpreterSettings{.axes = static_cast<int>(axes_)});
+  load_offsets(interpreter.offsets(), snapshot);
+  interpreter.reload_offsets();
+  interpreter.sync_position(axis_values(*snapshot.machine_position_mm));
+  actions_.clear();
+  if (!interpreter.interpret(mode_line(snapshot.modes), actions_)) {
+    interpreter_.reset();
+    return;
+  }
+  interpreter.reload_offsets();
+  // Offsets that do not add up to what is reported are not understood.
+  if (!agrees(interpreter.work_coordinate_offset(), *snapshot.work_offset_mm)) interpreter_.reset();
+}
+
+void LineTracker::on_accepted(std::string_view line) {
+  if (!interpreter_) return;
+  const std::string_view text = base::trim(line);
+  if (text.starts_with('$')) {
+    const bool moves = base::starts_with_ignoring_case(text, "$J") || base::starts_with_ignoring_case(text, "$H") ||
+                       base::starts_with_ignoring_case(text, "$RST") || base::starts_with_ignoring_case(text, "$T");
+    if (moves) forget();
+    return;
+  }
+  actions_.clear();
+  const bool understood = interpreter_->interpret(text, actions_).has_value();
+  const bool is_beyond = std::ranges::any_of(actions_, [](const gcode::Action& action) {
+    return std::holds_alternative<gcode::ProbeMove>(action) || std::holds_alternative<gcode::ToolChange>(action);
+  });
+  if (!understood || is_beyond) forget();
+}
+
+std::vector<std::vector<double>> LineTracker::targets_of(std::string_view line) const {
+  std::vector<std::vector<double>> targets;
+  if (!interpreter_) return targets;
+  gcode::Interpreter reader = *interpreter_;
+  const std::string_view text = base::trim(line);
+  constexpr std::string_view kJog = "$J=";
+  if (base::starts_with_ignoring_case(text, kJog)) {
+    if (const auto jog = reader.interpret_jog(text.substr(kJog.size()))) {
+      targets.push_back(vector_of(jog->target_mm, axes_));
+    }
+    return targets;
+  }
+  std::vector<gcode::Action> actions;
+  if (text.starts_with('$') || !reader.interpret(text, actions)) return targets;
+  for (const gcode::Action& action : actions) {
+    if (const auto* const end = std::visit(MotionEnd{}, action)) targets.push_back(vector_of(*end, axes_));
+  }
+  return targets;
+}
+
+}  // namespace kerf::machine

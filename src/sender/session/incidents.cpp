@@ -1,0 +1,86 @@
+#include "sender/session/incidents.hpp"
+
+#include <utility>
+
+#include "sender/machine/secrets.hpp"
+
+namespace kerf::session {
+namespace {
+
+using machine::Incident;
+using machine::IncidentKind;
+using machine::IncidentLine;
+
+constexpr std::size_t kLinesKept = 8;
+
+bool is_evidence(streaming::Purpose purpose) {
+  return purpose == streaming::Purpose::JobLine || purpose == streaming::Purpose::Operator;
+}
+
+IncidentLine line_of(const streaming::OwedLine& line, bool answered) {
+  const bool is_system_line = line.text.starts_with('$');
+  return {.file_line = line.file_line,
+          .text = is_system_line ? machine::Secrets{}.hidden(line.text) : line.text,
+          .answered = answered};
+}
+
+}  // namespace
+
+void Incidents::forget() {
+  tracker_.forget();
+  answered_.clear();
+}
+
+void Incidents::start_from(const machine::Snapshot& snapshot, const vocabulary::Dialect& dialect) {
+  if (tracker_.knows() && (snapshot.parser_state_is_old || snapshot.offsets_are_old)) return;
+  tracker_.seed(snapshot, dialect);
+}
+
+void Incidents::on_accepted(const streaming::OwedLine& line) {
+  if (!is_evidence(line.purpose)) return;
+  tracker_.on_accepted(line.text);
+  answered_.push_back(line);
+  if (answered_.size() > kLinesKept) answered_.pop_front();
+}
+
+std::vector<IncidentLine> Incidents::recent_lines() const {
+  std::vector<IncidentLine> lines;
+  for (const auto& line : answered_) lines.push_back(line_of(line, true));
+  return lines;
+}
+
+void Incidents::on_alarm(int code, const machine::Snapshot& before, const streaming::Ledger& ledger,
+                         bool reset_by_kerf) {
+  Incident incident{.kind = IncidentKind::Alarm,
+                    .code = code,
+                    .lines = recent_lines(),
+                    .before = before,
+                    .reset_by_kerf = reset_by_kerf};
+  for (const auto& line : ledger.owed()) {
+    if (!is_evidence(line.purpose)) continue;
+    if (!incident.culprit) {
+      incident.culprit = line_of(line, false);
+      incident.targets_mm = tracker_.targets_of(line.text);
+    }
+    incident.lines.push_back(line_of(line, false));
+    if (incident.lines.size() >= 2 * kLinesKept) break;
+  }
+  alarm_ = std::move(incident);
+  tracker_.forget();
+}
+
+void Incidents::on_alarm_state(int code, const machine::Snapshot& snapshot) {
+  if (alarm_ && (code == 0 || alarm_->code == code)) return;
+  alarm_ = Incident{.kind = IncidentKind::Alarm, .code = code, .before = snapshot};
+}
+
+Incident Incidents::refused(int code, const streaming::OwedLine& line, const machine::Snapshot& before) const {
+  return {.kind = IncidentKind::Error,
+          .code = code,
+          .lines = recent_lines(),
+          .culprit = line_of(line, true),
+          .targets_mm = tracker_.targets_of(line.text),
+          .before = before};
+}
+
+}  // namespace kerf::session

@@ -1,0 +1,43 @@
+#pragma once
+// Remembers the last lines and where they lead, so that an alarm or an error can be explained.
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string_view>
+
+#include "sender/machine/explanation.hpp"
+#include "sender/machine/line_tracker.hpp"
+#include "sender/streaming/ledger.hpp"
+
+namespace kerf::session {
+
+/// Told of every line that is answered; asked when something happens.
+class Incidents {
+ public:
+  /// Nothing is known about modes and position any more.
+  void forget();
+  /// The machine rests and everything is answered: lines are followed from here.
+  void start_from(const machine::Snapshot& snapshot, const vocabulary::Dialect& dialect);
+  void on_accepted(const streaming::OwedLine& line);
+
+  /// An alarm: the oldest line that has no answer is the one being read or executed.
+  void on_alarm(int code, const machine::Snapshot& before, const streaming::Ledger& ledger, bool reset_by_kerf);
+  /// A report of an alarm that nobody was told of.
+  void on_alarm_state(int code, const machine::Snapshot& snapshot);
+  [[nodiscard]] machine::Incident refused(int code, const streaming::OwedLine& line,
+                                          const machine::Snapshot& before) const;
+
+  /// The alarm that holds the machine, as it was when it came.
+  [[nodiscard]] const std::optional<machine::Incident>& alarm() const { return alarm_; }
+  void clear_alarm() { alarm_.reset(); }
+
+ private:
+  [[nodiscard]] std::vector<machine::IncidentLine> recent_lines() const;
+
+  machine::LineTracker tracker_;
+  std::deque<streaming::OwedLine> answered_;
+  std::optional<machine::Incident> alarm_;
+};
+
+}  // namespace kerf::session
