@@ -79,7 +79,7 @@ ExitStatus print_tables(const CodesOptions& options) {
 ExitStatus list_codes(const CodesOptions& options) {
   if (!options.personality.empty()) return print_tables(options);
   ExitStatus status = ExitStatus::Done;
-  const ExitStatus visited = visit(options.machine, {}, [&](const io::SessionHost& host) {
+  const ExitStatus visited = visit(options.machine, {.recording = options.recording}, [&](const io::SessionHost& host) {
     const machine::Capabilities& known = host.session().capabilities();
     status = print(options.errors ? known.errors : known.alarms, vocabulary::dialect_of(known.family), options);
   });

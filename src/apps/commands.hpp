@@ -75,6 +75,7 @@ struct StatusOptions {
   std::string machine = kDefaultMachine;
   bool json = false;
   bool watch = false;  ///< go on until interrupted
+  io::RecordingOptions recording{};
 };
 [[nodiscard]] ExitStatus show_status(const StatusOptions& options);
 
@@ -85,6 +86,7 @@ struct CodesOptions {
   std::optional<int> code;  ///< explain this one
   bool errors = false;      ///< errors, not alarms
   bool json = false;
+  io::RecordingOptions recording{};
 };
 [[nodiscard]] ExitStatus list_codes(const CodesOptions& options);
 

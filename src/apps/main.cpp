@@ -171,7 +171,7 @@ void add_describe(CLI::App& kerf, Chosen& chosen) {
 void add_status(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::StatusOptions>();
   CLI::App* command = kerf.add_subcommand("status", "Say what the machine is doing: state, position, inputs, alarms");
-  command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  add_machine(*command, options->machine, options->recording);
   command->add_flag("-w,--watch", options->watch,
                     "Go on until Ctrl-C: one line on a terminal, else one JSON object a line for each change");
   command->add_flag("--json", options->json, "Print everything that is known as JSON");
@@ -185,13 +185,12 @@ void add_codes(CLI::App& kerf, Chosen& chosen, bool errors) {
   CLI::App* command = errors ? kerf.add_subcommand("errors", "List what the numbers behind 'error:' mean")
                              : kerf.add_subcommand("alarms", "List what the numbers behind 'ALARM:' mean");
   command->add_option("CODE", options->code, "Explain this one, and say what to do")->type_name("");
-  CLI::Option* machine =
-      command->add_option("-m,--machine", options->machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  add_machine(*command, options->machine, options->recording);
   command
       ->add_option("-p,--personality", options->personality,
                    "Ask no machine, but Kerf's own tables: " + kerf::firmware::personality_names())
       ->type_name("NAME")
-      ->excludes(machine);
+      ->excludes(command->get_option("--machine"));
   command->add_flag("--json", options->json, "Print JSON");
   command->footer(errors ? "\nExample: kerf errors 20 --personality grbl\n"
                          : "\nExample: kerf alarms 2 --personality grbl\n");

@@ -84,8 +84,8 @@ class Changes {
 /// Shows every report until interrupted.
 class Watch {
  public:
-  Watch(io::EventLoop& loop, io::MachineUrl url, bool json)
-      : loop_(loop), url_(std::move(url)), json_(json), stale_(loop) {}
+  Watch(io::EventLoop& loop, io::MachineUrl url, bool json, const io::RecordingOptions& recording)
+      : loop_(loop), url_(std::move(url)), json_(json), recording_(recording), stale_(loop) {}
 
   ExitStatus run() {
     constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
@@ -96,7 +96,8 @@ class Watch {
     host_ = std::make_unique<io::SessionHost>(
         loop_, url_, options,
         io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
-                                   .lost = [this](const io::TransportError& error) { on_lost(error); }});
+                                   .lost = [this](const io::TransportError& error) { on_lost(error); }},
+        recording_);
     loop_.run();
     return status_.value_or(ExitStatus::Done);
   }
@@ -151,6 +152,7 @@ class Watch {
   io::EventLoop& loop_;
   const io::MachineUrl url_;
   const bool json_;
+  const io::RecordingOptions& recording_;
   io::Timer stale_;
   Line line_;
   Changes changes_;
@@ -166,7 +168,7 @@ ExitStatus watch(const StatusOptions& options) {
     return ExitStatus::Usage;
   }
   io::EventLoop loop;
-  Watch view(loop, *url, options.json || !is_terminal(STDOUT_FILENO));
+  Watch view(loop, *url, options.json || !is_terminal(STDOUT_FILENO), options.recording);
   return view.run();
 }
 
@@ -176,7 +178,7 @@ ExitStatus show_status(const StatusOptions& options) {
   if (options.watch) return watch(options);
   bool in_alarm = false;
   // The codes of this controller, in its own words, are part of the explanation.
-  const VisitOptions how{.enumerate = true, .takes_busy = true};
+  const VisitOptions how{.enumerate = true, .takes_busy = true, .recording = options.recording};
   const ExitStatus status = visit(options.machine, how, [&](const io::SessionHost& host) {
     const MachineStatus known = status_of(host.session(), host.now());
     in_alarm = known.machine.state == vocabulary::MachineState::Alarm;

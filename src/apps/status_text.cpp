@@ -137,6 +137,7 @@ std::string link_text(const session::LinkHealth& link) {
   if (link.silent_for_s) return fmt::format("not answering for {}", age_text(*link.silent_for_s));
   if (link.report_age_s) text = fmt::format("last report {} ago", age_text(*link.report_age_s));
   if (link.automatic) return text + ", reports come by themselves";
+  if (link.ask_every_s >= 1) return text + fmt::format(", asked every {:.0f} s", link.ask_every_s);
   if (link.ask_every_s > 0) text += fmt::format(", asked {:.0f} times a second", 1 / link.ask_every_s);
   if (link.answer_time_s) text += fmt::format(", answered in {:.0f} ms", *link.answer_time_s * 1000);
   return text;

@@ -7,7 +7,7 @@
 
 #include "scenario.hpp"
 
-namespace kerf::simulation {
+namespace kerf::scenarios {
 namespace {
 
 using namespace std::chrono_literals;
@@ -26,7 +26,7 @@ class LiveState : public testing::TestWithParam<Firmware> {};
 INSTANTIATE_TEST_SUITE_P(Firmwares, LiveState, testing::ValuesIn(kFirmwares),
                          [](const auto& param) { return word_for(param.param); });
 
-std::size_t sent_bytes(const World& world, char byte) {
+std::size_t sent_bytes(const simulation::World& world, char byte) {
   std::size_t count = 0;
   for (const auto& entry : world.transcript()) {
     if (entry.direction == Direction::ToController) {
@@ -42,7 +42,7 @@ WorldOptions with_pendant() {
   return options;
 }
 
-bool has_pendant(const World& world) {
+bool has_pendant(const simulation::World& world) {
   return world.session().snapshot().pendant_in_control;
 }
 
@@ -68,7 +68,7 @@ TEST(Pendant, TakesTheMachineMovesItAndGivesItBack) {
   EXPECT_EQ(told<session::LineSent>(world).size(), lines);
   EXPECT_THAT(told<session::LinkSilent>(world), IsEmpty()) << "the link is deaf, not dead";
   ASSERT_TRUE(world.order("pendant return"));
-  ASSERT_TRUE(world.run_until([](const World& w) { return !has_pendant(w); }, 5s));
+  ASSERT_TRUE(world.run_until([](const simulation::World& w) { return !has_pendant(w); }, 5s));
   world.run_for(3s);
   EXPECT_THAT(told<session::PendantReleased>(world), SizeIs(1));
   const auto& known = world.session().snapshot();
@@ -184,13 +184,15 @@ TEST_P(LiveState, ASoftLimitIsExplainedWithLineAxisAndReason) {
   auto options = quick_serial(GetParam());
   for (const auto* const setting : {"20", "22"}) options.stored.settings[setting] = "1";
   options.stored.settings["132"] = "60.000";
+  options.stored.settings["23"] = "0";
   World world{options};
   ASSERT_TRUE(connect(world));
   ASSERT_TRUE(world.order("switch X 5"));
   ASSERT_TRUE(world.order("switch Y 5"));
   ASSERT_TRUE(world.order("switch Z 5"));
   world.submit(session::Home{});
-  ASSERT_TRUE(world.run_until([](const World& w) { return w.session().snapshot().homing.all.value_or(false); }, 3min));
+  ASSERT_TRUE(world.run_until(
+      [](const simulation::World& w) { return w.session().snapshot().homing.all.value_or(false); }, 3min));
   world.run_for(2s);
   world.submit(session::SendLine{"G43.1Z-12.1"});
   world.run_for(2s);
@@ -226,4 +228,4 @@ TEST_P(LiveState, AHardLimitNamesTheSwitch) {
 }
 
 }  // namespace
-}  // namespace kerf::simulation
+}  // namespace kerf::scenarios

@@ -115,7 +115,7 @@ LinkHealth StatusPoller::health(Instant now) const {
   if (reported_at_) health.report_age_s = base::to_seconds(now - *reported_at_);
   if (is_silent(now)) health.silent_for_s = base::to_seconds(now - *unanswered_since_);
   if (answer_time_) health.answer_time_s = base::to_seconds(*answer_time_);
-  health.ask_every_s = base::to_seconds(period());
+  health.ask_every_s = base::to_seconds(pendant_ ? kAskPendant : period());
   health.automatic = automatic_ > Duration{};
   return health;
 }
