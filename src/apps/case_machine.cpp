@@ -20,23 +20,33 @@ using simulation::InjectedByte;
 
 constexpr int kHex = 16;
 
-/// A firmware is told one line after the other, and refuses what does not fit yet: soft limits before homing.
+/// A firmware is told one line after the other, and refuses what does not fit yet: soft limits before homing. Where an
+/// error stays in force until an empty line or a reset, a refused last line refuses the blocks of the case as well, and
+/// settings that want a reset only act after one (grblHAL/core protocol.c, planner.c).
 std::vector<std::string> keep_accepted(CaseMachine& machine, std::string_view text) {
   std::vector<std::string> refused;
   auto& kept = machine.stored.settings;
   firmware::SettingsStore store(machine.personality, firmware::axes_of(machine.personality, machine.stored));
+  const bool latches = machine.personality.dialect().error_latch;
+  std::string latched;
   kept.clear();
   for (const std::string_view line : base::split(text, '\n')) {
     firmware::StoredState told;
     if (!firmware::apply_settings_text(told, line)) continue;
     for (const auto& [key, value] : told.settings) {
-      if (store.write(key, value)) {
-        kept.insert_or_assign(key, value);
-      } else {
+      const bool accepted = store.write(key, value).has_value();
+      latched.clear();
+      if (!accepted) {
         refused.push_back(key);
+        if (latches) latched = fmt::format("{}\n", base::trim(line));
+      } else if (latches && store.find(key)->match.row->reboot) {
+        machine.told += fmt::format("{}\n", base::trim(line));
+      } else {
+        kept.insert_or_assign(key, value);
       }
     }
   }
+  machine.told += latched;
   // A later line may have taken them back.
   if (!store.flag(firmware::setting::kSoftLimits)) kept.erase(std::to_string(firmware::setting::kSoftLimits));
   return refused;

@@ -49,7 +49,7 @@ class CaseRun {
         resets_after_alarm_(is_reset_after_alarm(machine.personality.firmware)),
         controller_(machine.personality, machine.stored) {
     for (const auto& event : machine.workcell) controller_.submit(now_, event);
-    switch_on(controller_, now_);
+    switch_on(controller_, now_, machine.told);
   }
 
   CaseRecord run() {

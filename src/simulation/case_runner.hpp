@@ -53,6 +53,9 @@ struct CaseMachine {
   const firmware::Personality& personality;
   firmware::StoredState stored{};
   std::vector<firmware::WorkcellEvent> workcell{};
+  /// Lines that it is told when it is on, before the case begins: settings that act after the next reset only, and a
+  /// last line that it refuses.
+  std::string told{};
 };
 
 /// Runs one case as the recordings of real firmware were made. Each line is sent when the one before is answered, at

@@ -123,7 +123,7 @@ class TraceRun {
         feeder_(as_sent(run.program), run.link, window_of(machine.personality.firmware)) {
     for (const auto& event : machine.workcell) controller_.submit(now_, event);
     if (machine.personality.full_buffer_drops_realtime) kept_free_ = kRoomForRealtime;
-    switch_on(controller_, now_);
+    switch_on(controller_, now_, machine.told);
     controller_.keep_motion_log();
     const std::string sent = as_sent(run.program);
     trace_.lines = static_cast<std::uint32_t>(std::ranges::count(sent, '\n'));
