@@ -98,6 +98,8 @@ struct ConsoleOptions {
 
 struct PortsOptions {
   bool json = false;
+  bool network = false;  ///< listen to what announces itself
+  bool watch = false;    ///< go on and tell what comes and goes
 };
 [[nodiscard]] ExitStatus list_ports(const PortsOptions& options);
 

@@ -46,12 +46,14 @@ class Console {
     const io::SignalWatch signals(loop_, kSignals, [this](int signal) { on_signal(signal); });
     session::SessionOptions options;
     options.reset_policy = session::ResetPolicy::WhenSilent;
-    host_ = std::make_unique<io::SessionHost>(
-        loop_, url_, options,
-        io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
-                                   .lost = [this](const io::TransportError& error) { on_lost(error); },
-                                   .noted = [this](const std::string& sentence) { show(sentence); }},
-        recording_);
+    io::SessionHost::Callbacks callbacks{.event = [this](const session::Event& event) { on_event(event); },
+                                         .lost = [this](const io::TransportError& error) { on_lost(error); },
+                                         .noted = [this](const std::string& sentence) { show(sentence); }};
+    // The lines of a pipe would be refused while there is no link, and nobody would be there to repeat them.
+    if (is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO)) {
+      callbacks.interrupted = [this](const io::TransportError& error) { on_interrupted(error); };
+    }
+    host_ = std::make_unique<io::SessionHost>(loop_, url_, options, std::move(callbacks), recording_);
     loop_.run();
     return status_.value_or(ExitStatus::Done);
   }
@@ -63,7 +65,7 @@ class Console {
   }
 
   void on(const session::ControllerFound& found) {
-    if (input_) return;
+    if (input_ && !std::exchange(is_interrupted_, false)) return;
     show(found.sentence);
     begin();
   }
@@ -73,7 +75,9 @@ class Console {
   }
   void on(const session::HandshakeFailed& failed) {
     // on_lost() says better what became of the link.
-    if (failed.failure != session::HandshakeFailure::LinkLost) fail(failed.sentence, ExitStatus::NoConnection);
+    if (failed.failure == session::HandshakeFailure::LinkLost) return;
+    if (is_interrupted_) return show(failed.sentence);
+    fail(failed.sentence, ExitStatus::NoConnection);
   }
   void on(const session::CommandRefused& refused) { show(refused.sentence); }
   void on(const session::SettingsDrifted& drift) { show(drift.sentence); }
@@ -191,6 +195,13 @@ class Console {
     host_->submit(session::SendRealtime{'!'});
   }
 
+  void on_interrupted(const io::TransportError& error) {
+    if (std::exchange(is_interrupted_, true))
+      return;  // somebody takes the connection and closes it again: once is enough
+    show(io::explain(url_, error));
+    show("Kerf connects again as soon as it can, and asks the machine how it is. Nothing goes on by itself.");
+  }
+
   void on_lost(const io::TransportError& error) {
     fail(io::explain(url_, error), input_ ? ExitStatus::Interrupted : ExitStatus::NoConnection);
   }
@@ -223,6 +234,7 @@ class Console {
   std::optional<ExitStatus> status_;
   int reports_asked_ = 0;
   bool has_ended_ = false;
+  bool is_interrupted_ = false;  ///< the link was lost, and the machine is not known again yet
   std::unique_ptr<io::SessionHost> host_;
   std::unique_ptr<InputReader> input_;
 };

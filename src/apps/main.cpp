@@ -25,7 +25,9 @@ constexpr const char* kVersion = KERF_VERSION;
 constexpr const char* kMachineHelp =
     "Where the machine is:\n"
     "  /dev/ttyUSB0       a serial port (in full: serial:///dev/ttyUSB0?baud=115200)\n"
+    "  serial://usb/A906  the port with this USB serial number, wherever it is\n"
     "  HOST:PORT          a machine in the network (tcp://HOST:PORT)\n"
+    "  ws://HOST:PORT     the same through a WebSocket\n"
     "  /tmp/kerf-grbl     a pseudo-terminal (pty:///tmp/kerf-grbl)\n"
     "  virtual:grblhal    a machine inside Kerf: grbl, rabbit, grblhal or\n                     grblhal-expr; add "
     "?speed=20 or ?speed=max";
@@ -65,7 +67,7 @@ void add_run(CLI::App& kerf, Chosen& chosen) {
 void add_virtual_places(CLI::App& command, kerf::apps::VirtualOptions& options) {
   command
       .add_option("-l,--listen", options.listen,
-                  "Serve at this TCP address, such as tcp://127.0.0.1:5001; port 0 takes a free one")
+                  "Serve at this address, such as tcp://127.0.0.1:5001 or ws://127.0.0.1:81; port 0 takes a free one")
       ->allow_extra_args(false)
       ->type_name("URL");
   command
@@ -212,7 +214,9 @@ void add_console(CLI::App& kerf, Chosen& chosen) {
 void add_ports(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::PortsOptions>();
   CLI::App* command = kerf.add_subcommand("ports", "List what --machine could name: serial ports, network, virtual");
-  command->add_flag("--json", options->json, "Print the list as one JSON object");
+  command->add_flag("--network", options->network, "Also look for machines that announce themselves (mDNS)");
+  command->add_flag("--watch", options->watch, "Print the list again whenever it changes, until Ctrl-C");
+  command->add_flag("--json", options->json, "Print the list as one JSON object (with --watch, one a line)");
   command->footer("");
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::list_ports(*options); }; });
 }

@@ -131,15 +131,15 @@ OrComplained<std::vector<MachineSetup>> setups_of(const VirtualOptions& options,
                        .greets = options.welcome_on_connect,
                        .state_file = numbered(options.state_file, index + 1, is_many)};
     if (!options.listen.empty()) {
-      auto address = io::parse_listen_url(options.listen[std::min(index, options.listen.size() - 1)]);
+      auto address = io::parse_serve_url(options.listen[std::min(index, options.listen.size() - 1)]);
       if (!address) return said(io::explain(address.error()));
-      const bool counts = options.listen.size() == 1 && address->port != 0;
-      const std::size_t port = address->port + (counts ? index : 0);
+      const bool counts = options.listen.size() == 1 && address->tcp.port != 0;
+      const std::size_t port = address->tcp.port + (counts ? index : 0);
       if (port > std::numeric_limits<std::uint16_t>::max()) {
         return said(fmt::format("{} machines from port {} on need ports beyond 65535: begin lower, or use port 0.",
-                                machines, address->port));
+                                machines, address->tcp.port));
       }
-      address->port = static_cast<std::uint16_t>(port);
+      address->tcp.port = static_cast<std::uint16_t>(port);
       setup.address = *std::move(address);
     }
     if (!options.ptys.empty()) {

@@ -58,7 +58,7 @@ WireServer::WireServer(io::EventLoop& loop, std::string_view who, Callbacks call
                   .room = callbacks.room}),
       pty_(loop, callbacks.received) {}
 
-std::expected<std::string, std::string> WireServer::listen(const io::TcpAddress& address) {
+std::expected<std::string, std::string> WireServer::listen(const io::ServeAddress& address) {
   const auto listening = tcp_.listen(address);
   if (!listening) return std::unexpected(io::explain(listening.error(), io::to_string(address)));
   return io::to_string(*listening);
@@ -143,7 +143,7 @@ std::expected<std::string, std::string> VirtualMachine::open_pendant() {
     if (url.starts_with("//")) url.remove_prefix(2);
     return pendant_.open(std::string(url));
   }
-  const auto address = io::parse_listen_url(url);
+  const auto address = io::parse_serve_url(url);
   if (!address) return std::unexpected(io::explain(address.error()));
   return pendant_.listen(*address);
 }
@@ -169,7 +169,8 @@ void VirtualMachine::note_link(std::string sentence) {
 void VirtualMachine::greet() {
   if (!setup_.greets || !host_.rig().is_powered()) return;
   const std::string_view welcome = host_.controller().personality().dialect().welcome;
-  sender_.greet(fmt::format("\r\n{}\r\n", welcome), "[MSG:TELNET STREAM ACTIVE]\r\n");
+  const std::string_view kind = setup_.address && setup_.address->websocket ? "WEBSOCKET" : "TELNET";
+  sender_.greet(fmt::format("\r\n{}\r\n", welcome), fmt::format("[MSG:{} STREAM ACTIVE]\r\n", kind));
 }
 
 void VirtualMachine::set_cable(LinkState link) {

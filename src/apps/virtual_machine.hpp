@@ -42,7 +42,7 @@ struct MachineSetup {
   /// In front of what is said about it; empty when it is the only one.
   std::string label;
   io::Speed speed;
-  std::optional<io::TcpAddress> address;
+  std::optional<io::ServeAddress> address;
   std::string pty;
   /// An address to listen at, or a `pty:` with the name of a terminal; empty: none.
   std::string pendant;
@@ -67,7 +67,7 @@ class WireServer {
   WireServer(io::EventLoop& loop, std::string_view who, Callbacks callbacks);
 
   /// The place, or what went wrong.
-  [[nodiscard]] std::expected<std::string, std::string> listen(const io::TcpAddress& address);
+  [[nodiscard]] std::expected<std::string, std::string> listen(const io::ServeAddress& address);
   [[nodiscard]] std::expected<std::string, std::string> open(const std::string& path);
   void write(std::string_view bytes);
   /// `greeting` goes to the network client, `notice` to the terminal beside it.

@@ -99,6 +99,32 @@ std::expected<MachineUrl, UrlError> parse_tcp(std::string_view text) {
   return *std::move(tcp);
 }
 
+/// RFC 6455 takes any HTTP token; this is less, and enough for every name that was ever seen.
+bool is_protocol_name(std::string_view name) {
+  return !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '.' || c == '_';
+  });
+}
+
+std::expected<MachineUrl, UrlError> parse_websocket(std::string_view text) {
+  const Parts parts = split_option(text);
+  const auto slash = std::min(parts.address.find('/'), parts.address.size());
+  auto host = parse_host_port(parts.address.substr(0, slash));
+  if (!host && host.error().fault == UrlFault::NoPort) return wrong(UrlFault::NoWebSocketPort, host.error().part);
+  if (!host) return std::unexpected(std::move(host.error()));
+  if (host->port == 0) return wrong(UrlFault::BadPort, "0");
+  WebSocketAddress address{.host = std::move(host->host), .port = host->port};
+  if (slash < parts.address.size()) address.path = parts.address.substr(slash);
+  // The path goes into a line of HTTP.
+  const auto is_visible = [](unsigned char c) { return c > ' ' && c < 0x7f; };
+  if (!std::ranges::all_of(address.path, is_visible)) return wrong(UrlFault::NotAnAddress, text);
+  if (parts.option_name.empty()) return address;
+  if (parts.option_name != "protocol") return wrong(UrlFault::UnknownOption, parts.option_name);
+  if (!is_protocol_name(parts.option_value)) return wrong(UrlFault::BadProtocol, parts.option_value);
+  address.protocol = parts.option_value == "none" ? std::string_view{} : parts.option_value;
+  return address;
+}
+
 std::expected<MachineUrl, UrlError> parse_pty(std::string_view text) {
   const Parts parts = split_option(text);
   if (!parts.option_name.empty()) return wrong(UrlFault::UnknownOption, parts.option_name);
@@ -128,8 +154,11 @@ struct SchemeRow {
   std::expected<MachineUrl, UrlError> (*parse)(std::string_view rest);
 };
 
-constexpr std::array<SchemeRow, 4> kSchemes{
-    {{"serial", &parse_serial}, {"tcp", &parse_tcp}, {"pty", &parse_pty}, {"virtual", &parse_virtual}}};
+constexpr std::array<SchemeRow, 5> kSchemes{{{"serial", &parse_serial},
+                                             {"tcp", &parse_tcp},
+                                             {"ws", &parse_websocket},
+                                             {"pty", &parse_pty},
+                                             {"virtual", &parse_virtual}}};
 
 /// COM1 … COM999, as Windows names serial ports.
 bool is_com_port(std::string_view text) {
@@ -159,7 +188,7 @@ std::optional<std::string_view> scheme_of(std::string_view text) {
 }
 
 constexpr std::string_view kForms =
-    "serial:///dev/ttyUSB0?baud=115200, tcp://HOST:PORT, pty:///PATH or virtual:grblhal";
+    "serial:///dev/ttyUSB0?baud=115200, tcp://HOST:PORT, ws://HOST:PORT, pty:///PATH or virtual:grblhal";
 
 }  // namespace
 
@@ -187,6 +216,15 @@ std::expected<TcpAddress, UrlError> parse_listen_url(std::string_view text) {
   return parse_host_port(text);
 }
 
+std::expected<ServeAddress, UrlError> parse_serve_url(std::string_view text) {
+  constexpr std::string_view kPrefix = "ws://";
+  const bool is_websocket = lower(text.substr(0, kPrefix.size())) == kPrefix;
+  if (is_websocket) text.remove_prefix(kPrefix.size());
+  auto tcp = parse_listen_url(text);
+  if (!tcp) return std::unexpected(std::move(tcp.error()));
+  return ServeAddress{.tcp = *std::move(tcp), .websocket = is_websocket};
+}
+
 std::expected<const firmware::Personality*, UrlError> parse_personality(std::string_view text) {
   if (const firmware::Personality* personality = firmware::personality_named(text)) return personality;
   return wrong(UrlFault::UnknownPersonality, text);
@@ -202,6 +240,11 @@ std::string explain(const UrlError& error) {
       return fmt::format(
           "'{}' has no port: write {}:PORT (often 23 on grblHAL, 5001 on Rabbit GRBL), or a path such as /dev/ttyUSB0.",
           part, part);
+    case UrlFault::NoWebSocketPort:
+      return fmt::format("'{0}' has no port: write ws://{0}:PORT (often 81 on grblHAL; 80, 81 or 82 on FluidNC).",
+                         part);
+    case UrlFault::BadProtocol:
+      return fmt::format("'{}' is no subprotocol's name: write ?protocol=arduino, or ?protocol=none.", part);
     case UrlFault::BadPort: return fmt::format("'{}' is no TCP port: use a number from 1 to 65535.", part);
     case UrlFault::NoPath: return fmt::format("'{0}://' names no port: write {0}:///PATH.", part);
     case UrlFault::RelativePath: return fmt::format("'{}' is not a full path: write pty:///tmp/NAME.", part);
@@ -214,16 +257,27 @@ std::string explain(const UrlError& error) {
       return fmt::format("'{}' is no speed: use max, or a factor from {} to {} (1 is real time).", part, kLeastSpeed,
                          kMostSpeed);
     case UrlFault::UnknownOption:
-      return fmt::format("'?{}' is no option of this address: serial has ?baud=N, virtual has ?speed=N or ?speed=max.",
-                         part);
+      return fmt::format(
+          "'?{}' is no option of this address: serial has ?baud=N, ws has ?protocol=NAME, virtual has ?speed=N or "
+          "?speed=max.",
+          part);
     case UrlFault::NotAnAddress: return fmt::format("'{}' is no machine's address: write {}.", part, kForms);
   }
   return {};
 }
 
+std::string host_and_port(const std::string& host, std::uint16_t port) {
+  const bool is_ipv6 = host.find(':') != std::string::npos;
+  return fmt::format("{}{}{}:{}", is_ipv6 ? "[" : "", host, is_ipv6 ? "]" : "", port);
+}
+
 std::string to_string(const TcpAddress& address) {
-  const bool is_ipv6 = address.host.find(':') != std::string::npos;
-  return fmt::format("tcp://{}{}{}:{}", is_ipv6 ? "[" : "", address.host, is_ipv6 ? "]" : "", address.port);
+  return "tcp://" + host_and_port(address.host, address.port);
+}
+
+std::string to_string(const ServeAddress& address) {
+  if (!address.websocket) return to_string(address.tcp);
+  return "ws://" + host_and_port(address.tcp.host, address.tcp.port);
 }
 
 std::string to_string(const MachineUrl& url) {
@@ -232,6 +286,11 @@ std::string to_string(const MachineUrl& url) {
       return fmt::format("serial://{}?baud={}", serial.path, serial.baud);
     }
     std::string operator()(const TcpAddress& tcp) const { return to_string(tcp); }
+    std::string operator()(const WebSocketAddress& ws) const {
+      const std::string text = "ws://" + host_and_port(ws.host, ws.port) + ws.path;
+      if (ws.protocol == WebSocketAddress{}.protocol) return text;
+      return text + "?protocol=" + (ws.protocol.empty() ? "none" : ws.protocol);
+    }
     std::string operator()(const PtyAddress& pty) const { return "pty://" + pty.path; }
     std::string operator()(const VirtualAddress& machine) const {
       return fmt::format("virtual:{}?speed={}", machine.personality->key(), to_string(machine.speed));

@@ -51,7 +51,7 @@ TEST(MachineUrl, Shorthands) {
 
 TEST(MachineUrl, EveryFaultIsNamed) {
   EXPECT_EQ(fault_of(""), UrlFault::Empty);
-  EXPECT_EQ(fault_of("ws://host:81"), UrlFault::UnknownScheme);
+  EXPECT_EQ(fault_of("http://host:81"), UrlFault::UnknownScheme);
   EXPECT_EQ(fault_of("tcp://:5001"), UrlFault::NoHost);
   EXPECT_EQ(fault_of("rabbit.local"), UrlFault::NoPort);
   EXPECT_EQ(fault_of("tcp://rabbit.local"), UrlFault::NoPort);
@@ -81,6 +81,23 @@ TEST(MachineUrl, FaultsSayWhatToWrite) {
             "There is no virtual machine 'marlin': choose grbl, rabbit, grblhal or grblhal-expr.");
 }
 
+TEST(MachineUrl, WebSockets) {
+  EXPECT_EQ(parsed("ws://192.168.5.1:81"), MachineUrl(WebSocketAddress{"192.168.5.1", 81}));
+  EXPECT_EQ(parsed("WS://[::1]:80/ws"), MachineUrl(WebSocketAddress{"::1", 80, "/ws"}));
+  EXPECT_EQ(parsed("ws://h:81/?protocol=none"), MachineUrl(WebSocketAddress{"h", 81, "/", ""}));
+  EXPECT_EQ(parsed("ws://h:81?protocol=webui-v3"), MachineUrl(WebSocketAddress{"h", 81, "/", "webui-v3"}));
+  EXPECT_EQ(fault_of("ws://fluidnc.local"), UrlFault::NoWebSocketPort);
+  EXPECT_EQ(fault_of("ws://:81/"), UrlFault::NoHost);
+  EXPECT_EQ(fault_of("ws://h:81/a b"), UrlFault::NotAnAddress);
+  EXPECT_EQ(fault_of("ws://h:81/?protocol=a,b"), UrlFault::BadProtocol);
+  EXPECT_EQ(fault_of("ws://h:81/?frames=text"), UrlFault::UnknownOption);
+}
+
+TEST(ServeUrl, TcpOrWebSocket) {
+  EXPECT_EQ(parse_serve_url("ws://127.0.0.1:0"), (ServeAddress{{"127.0.0.1", 0}, true}));
+  EXPECT_EQ(parse_serve_url("127.0.0.1:5001"), (ServeAddress{{"127.0.0.1", 5001}, false}));
+}
+
 TEST(ListenUrl, TakesPortZeroAndNothingButTcp) {
   EXPECT_EQ(parse_listen_url("tcp://127.0.0.1:0"), (TcpAddress{"127.0.0.1", 0}));
   EXPECT_EQ(parse_listen_url("0.0.0.0:5001"), (TcpAddress{"0.0.0.0", 5001}));
@@ -92,8 +109,10 @@ RC_GTEST_PROP(MachineUrlProperty, PrintedAddressIsReadBack, ()) {
   const auto name = *rc::gen::nonEmpty(rc::gen::container<std::string>(rc::gen::inRange('a', 'z')));
   const auto port = *rc::gen::inRange<std::uint16_t>(1, 65535);
   const auto baud = *rc::gen::inRange(300, 4'000'000);
-  for (const MachineUrl& url : {MachineUrl(SerialAddress{"/dev/" + name, baud}), MachineUrl(TcpAddress{name, port}),
-                                MachineUrl(PtyAddress{"/" + name})}) {
+  for (const MachineUrl& url :
+       {MachineUrl(SerialAddress{"/dev/" + name, baud}), MachineUrl(TcpAddress{name, port}),
+        MachineUrl(PtyAddress{"/" + name}), MachineUrl(WebSocketAddress{name, port, "/" + name}),
+        MachineUrl(WebSocketAddress{name, port, "/", name})}) {
     const bool is_read_back = parse_machine_url(to_string(url)) == url;
     RC_ASSERT(is_read_back);
   }

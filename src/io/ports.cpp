@@ -2,28 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <string_view>
 
-#include <libudev.h>
+#include "io/udev_objects.hpp"
 
 namespace kerf::io {
 namespace {
 
-template <auto Release>
-struct Releaser {
-  template <typename Object>
-  void operator()(Object* object) const {
-    Release(object);
-  }
-};
-using Udev = std::unique_ptr<udev, Releaser<udev_unref>>;
-using Enumeration = std::unique_ptr<udev_enumerate, Releaser<udev_enumerate_unref>>;
-using Device = std::unique_ptr<udev_device, Releaser<udev_device_unref>>;
-
 std::string text_of(const char* text) {
   return text == nullptr ? std::string() : std::string(text);
 }
+
+constexpr std::string_view kById = "by-id/";
+constexpr std::string_view kByNumber = "usb/";
 
 /// Names of drivers that are real ports. `ttyS` needs a look at its hardware, everything else (consoles, ptys) is none.
 bool is_port(udev_device* device, std::string_view path) {
@@ -52,6 +43,7 @@ SerialPort port_of(udev_device* device, const std::string& path) {
   port.maker = text_of(udev_device_get_sysattr_value(usb, "manufacturer"));
   port.name = text_of(udev_device_get_sysattr_value(usb, "product"));
   port.serial_number = text_of(udev_device_get_sysattr_value(usb, "serial"));
+  if (!port.serial_number.empty()) port.lasting_url = "serial://" + std::string(kByNumber) + port.serial_number;
   return port;
 }
 
@@ -66,19 +58,44 @@ std::vector<SerialPort> list_serial_ports() {
   std::vector<SerialPort> ports;
   const Udev context(udev_new());
   if (!context) return ports;
-  const Enumeration enumeration(udev_enumerate_new(context.get()));
+  const UdevEnumeration enumeration(udev_enumerate_new(context.get()));
   if (!enumeration) return ports;
   udev_enumerate_add_match_subsystem(enumeration.get(), "tty");
   udev_enumerate_scan_devices(enumeration.get());
   udev_list_entry* entry = nullptr;
   udev_list_entry_foreach(entry, udev_enumerate_get_list_entry(enumeration.get())) {
-    const Device device(udev_device_new_from_syspath(context.get(), udev_list_entry_get_name(entry)));
+    const UdevDevice device(udev_device_new_from_syspath(context.get(), udev_list_entry_get_name(entry)));
     if (!device) continue;
     const std::string path = text_of(udev_device_get_devnode(device.get()));
     if (is_port(device.get(), path)) ports.push_back(port_of(device.get(), path));
   }
   std::ranges::sort(ports, comes_before);
   return ports;
+}
+
+std::optional<std::string> serial_path(const std::string& name, std::span<const SerialPort> ports) {
+  const auto path_where = [&](auto matches) -> std::optional<std::string> {
+    const auto found = std::ranges::find_if(ports, matches);
+    if (found == ports.end()) return std::nullopt;
+    return found->path;
+  };
+  if (name.starts_with(kById)) {
+    const std::string link = "/dev/serial/" + name;
+    return path_where([&](const SerialPort& port) { return port.by_id == link; }).value_or(link);
+  }
+  if (!name.starts_with(kByNumber)) return name;
+  return path_where([&](const SerialPort& port) {
+    return !port.serial_number.empty() && port.serial_number == std::string_view(name).substr(kByNumber.size());
+  });
+}
+
+std::string lasting_name(const std::string& name, std::span<const SerialPort> ports) {
+  const auto path = serial_path(name, ports);
+  const auto found = std::ranges::find_if(ports, [&](const SerialPort& port) { return path && port.path == *path; });
+  if (found == ports.end() || found->serial_number.empty()) return name;
+  // Makers give a whole batch the same number ("0001"): then it says nothing.
+  const auto has_its_number = [&](const SerialPort& port) { return port.serial_number == found->serial_number; };
+  return std::ranges::count_if(ports, has_its_number) == 1 ? std::string(kByNumber) + found->serial_number : name;
 }
 
 }  // namespace kerf::io

@@ -6,6 +6,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/serial_port.hpp>
 
+#include "io/ports.hpp"
 #include "io/serial_line.hpp"
 #include "io/stream_link.hpp"
 #include "io/transport.hpp"
@@ -93,7 +94,9 @@ class SerialTransport final : public Transport {
 }  // namespace
 
 std::unique_ptr<Transport> open_serial(EventLoop& loop, const SerialAddress& address, LinkCallbacks callbacks) {
-  return std::make_unique<SerialTransport>(loop, address.path, address.baud, std::move(callbacks));
+  // A number that no port has stays as it is, and is not found when it is opened.
+  const std::string path = serial_path(address.path, list_serial_ports()).value_or(address.path);
+  return std::make_unique<SerialTransport>(loop, path, address.baud, std::move(callbacks));
 }
 
 std::unique_ptr<Transport> open_pty(EventLoop& loop, const PtyAddress& address, LinkCallbacks callbacks) {

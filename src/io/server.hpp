@@ -23,8 +23,9 @@ struct ListenError {
 /// One sentence for people; `place` is the address or the path.
 [[nodiscard]] std::string explain(const ListenError& error, std::string_view place);
 
-/// A TCP port for one client at a time, as a controller has one input buffer. While one is connected, another is turned
-/// away at once: two senders would mix their lines, and the second must not ruin the first one's job (protocol.md 1.3).
+/// A TCP port, for raw bytes or WebSockets, for one client at a time, as a controller has one input buffer. While one
+/// is connected, another is turned away at once: two senders would mix their lines, and the second must not ruin the
+/// first one's job (protocol.md 1.3).
 class TcpServer {
  public:
   struct Callbacks {
@@ -40,7 +41,7 @@ class TcpServer {
   ~TcpServer();
 
   /// The address with the real port, where 0 was asked for.
-  [[nodiscard]] std::expected<TcpAddress, ListenError> listen(const TcpAddress& address);
+  [[nodiscard]] std::expected<ServeAddress, ListenError> listen(const ServeAddress& address);
   /// Without a client the bytes are gone, as they would be on a wire that ends nowhere.
   void write(std::string_view bytes);
   /// There may be room again.

@@ -8,7 +8,7 @@ namespace {
 
 session::SessionOptions with_traits_of(const MachineUrl& url, session::SessionOptions options) {
   if (const auto* serial = std::get_if<SerialAddress>(&url)) options.link.baud = serial->baud;
-  options.link.network = std::holds_alternative<TcpAddress>(url);
+  options.link.network = std::holds_alternative<TcpAddress>(url) || std::holds_alternative<WebSocketAddress>(url);
   return options;
 }
 
@@ -31,19 +31,19 @@ SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::Sessio
       callbacks_(std::move(callbacks)),
       keeper_(url),
       timer_(loop),
-      transport_(open_transport(loop, url,
-                                {.opened =
-                                     [this] {
-                                       is_open_ = true;
-                                       session_.on_open(loop_.now());
-                                       settle();
-                                     },
-                                 .received =
-                                     [this](std::string_view bytes) {
-                                       session_.on_bytes(loop_.now(), bytes);
-                                       settle();
-                                     },
-                                 .lost = [this](const TransportError& error) { on_lost(error); }})) {}
+      link_(loop, url, callbacks_.interrupted ? Persistence::Again : Persistence::Once,
+            {.opened =
+                 [this] {
+                   is_open_ = true;
+                   session_.on_open(loop_.now());
+                   settle();
+                 },
+             .received =
+                 [this](std::string_view bytes) {
+                   session_.on_bytes(loop_.now(), bytes);
+                   settle();
+                 },
+             .lost = [this](const TransportError& error) { on_lost(error); }}) {}
 
 void SessionHost::submit(const session::Command& command) {
   session_.submit(loop_.now(), command);
@@ -57,6 +57,7 @@ void SessionHost::on_lost(const TransportError& error) {
     settle();
   }
   timer_.disarm();
+  if (link_.is_trying()) return callbacks_.interrupted(error);
   callbacks_.lost(error);
 }
 
@@ -73,8 +74,8 @@ void SessionHost::settle() {
   if (is_settling_) return;  // an observer submitted a command: the loop below goes on with it
   is_settling_ = true;
   for (session::Outbox outbox = session_.take_outbox(); !outbox.empty(); outbox = session_.take_outbox()) {
-    if (!outbox.realtime.empty()) transport_->write_realtime(outbox.realtime);
-    if (!outbox.lines.empty()) transport_->write_lines(outbox.lines);
+    if (!outbox.realtime.empty()) link_.transport().write_realtime(outbox.realtime);
+    if (!outbox.lines.empty()) link_.transport().write_lines(outbox.lines);
     write_down();  // behind the bytes: they have no time to lose
     for (const session::Event& event : outbox.events) {
       if (const auto command = keeper_.on_event(event, session_)) session_.submit(loop_.now(), *command);

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "io/event_loop.hpp"
+#include "io/link_keeper.hpp"
 #include "io/machine_url.hpp"
 #include "io/settings_keeper.hpp"
-#include "io/transport.hpp"
 #include "io/wire_log.hpp"
 #include "sender/session/recorded_session.hpp"
 
@@ -24,6 +24,9 @@ class SessionHost {
     std::function<void(const std::string& sentence)> noted = {};
     /// What is written down, as it happens.
     std::function<void(const session::Record&)> recorded = {};
+    /// With this, a link that is lost after it was open is opened again (link_keeper.hpp) and the handshake begins
+    /// anew; it is called instead of `lost`. No line and no command waits for the new link.
+    std::function<void(const TransportError&)> interrupted = {};
   };
 
   /// Starts to open the link at once. `options.link` is filled in from the address. The connection is recorded.
@@ -49,7 +52,7 @@ class SessionHost {
   Callbacks callbacks_;
   SettingsKeeper keeper_;
   Timer timer_;
-  std::unique_ptr<Transport> transport_;
+  LinkKeeper link_;
   bool is_open_ = false;
   bool is_settling_ = false;
 };

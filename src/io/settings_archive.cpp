@@ -65,6 +65,7 @@ struct NamePart {
     return "serial-" + serial.path;
   }
   std::string operator()(const TcpAddress& tcp) const { return "tcp-" + tcp.host + "-" + std::to_string(tcp.port); }
+  std::string operator()(const WebSocketAddress& ws) const { return "ws-" + ws.host + "-" + std::to_string(ws.port); }
   std::string operator()(const PtyAddress& pty) const { return "pty-" + pty.path; }
   std::string operator()(const VirtualAddress&) const { return {}; }
 };

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,35 +13,33 @@
 #include <boost/asio/error.hpp>
 #include <boost/asio/write.hpp>
 
+#include "io/byte_link.hpp"
+
 namespace kerf::io {
 
 /// Lives as long as an operation of its stream is under way; close() silences it. Loop's thread only.
 template <typename Stream>
-class StreamLink : public std::enable_shared_from_this<StreamLink<Stream>> {
+class StreamLink final : public ByteLink, public std::enable_shared_from_this<StreamLink<Stream>> {
  public:
-  struct Callbacks {
-    std::function<void(std::string_view)> received;
-    std::function<void(boost::system::error_code)> lost;
-    /// Most bytes that `received` may be given now; without it, any number. At 0 nothing is read until go_on().
-    std::function<std::size_t()> room = {};
-  };
-
   StreamLink(Stream stream, Callbacks callbacks)
       : stream_(std::move(stream)), callbacks_(std::make_shared<const Callbacks>(std::move(callbacks))) {}
 
-  void start() { read(); }
+  void start() override {
+    const auto callbacks = callbacks_;
+    if (callbacks->opened) callbacks->opened();
+    if (callbacks_) read();
+  }
 
-  /// There may be room again.
-  void go_on() {
+  void go_on() override {
     if (callbacks_ && std::exchange(waits_for_room_, false)) read();
   }
 
-  void write_realtime(std::string_view bytes) {
+  void write_realtime(std::string_view bytes) override {
     realtime_.append(bytes);
     write();
   }
 
-  void write_lines(std::string_view bytes) {
+  void write_lines(std::string_view bytes) override {
     lines_.append(bytes);
     write();
   }
@@ -51,7 +48,7 @@ class StreamLink : public std::enable_shared_from_this<StreamLink<Stream>> {
   [[nodiscard]] std::size_t waiting_bytes() const { return realtime_.size() + lines_.size(); }
   void drop_waiting_lines() { lines_.clear(); }
 
-  void close() {
+  void close() override {
     callbacks_.reset();
     boost::system::error_code ignored;
     stream_.close(ignored);
@@ -60,9 +57,6 @@ class StreamLink : public std::enable_shared_from_this<StreamLink<Stream>> {
   [[nodiscard]] Stream& stream() { return stream_; }
 
  private:
-  /// Small enough that a realtime byte never waits long behind one piece, large enough for a fast link.
-  static constexpr std::size_t kMostBytesAtOnce = 256;
-
   void read() {
     const std::size_t room = callbacks_->room ? callbacks_->room() : incoming_.size();
     waits_for_room_ = room == 0;

@@ -6,6 +6,7 @@
 #include "io/server.hpp"
 #include "io/stream_link.hpp"
 #include "io/tcp_options.hpp"
+#include "io/websocket_link.hpp"
 
 namespace kerf::io {
 
@@ -29,8 +30,6 @@ ListenError error_of(boost::system::error_code fault) {
 }  // namespace
 
 struct TcpServer::State : std::enable_shared_from_this<State> {
-  using Link = StreamLink<tcp::socket>;
-
   State(EventLoop& loop, Callbacks on_what) : acceptor(loop.context()), callbacks(std::move(on_what)) {}
 
   void accept() {
@@ -52,26 +51,40 @@ struct TcpServer::State : std::enable_shared_from_this<State> {
     }
     prepare_tcp(socket);
     peer = name;
-    client = std::make_shared<Link>(std::move(socket),
-                                    Link::Callbacks{.received = callbacks.received,
-                                                    .lost =
-                                                        [self = weak_from_this()](boost::system::error_code) {
-                                                          if (const auto alive = self.lock()) alive->lose_client();
-                                                        },
-                                                    .room = callbacks.room});
-    callbacks.connected(peer);
+    ByteLink::Callbacks heard{.received = callbacks.received,
+                              .lost =
+                                  [self = weak_from_this()](boost::system::error_code) {
+                                    if (const auto alive = self.lock()) alive->lose_client();
+                                  },
+                              .room = callbacks.room,
+                              .opened =
+                                  [self = weak_from_this()] {
+                                    if (const auto alive = self.lock()) alive->open_client();
+                                  }};
+    if (is_websocket) {
+      client = make_websocket_server(std::move(socket), std::move(heard));
+    } else {
+      client = std::make_shared<StreamLink<tcp::socket>>(std::move(socket), std::move(heard));
+    }
     client->start();
+  }
+
+  void open_client() {
+    is_connected = true;
+    callbacks.connected(peer);
   }
 
   void lose_client() {
     client.reset();
-    callbacks.disconnected(peer);
+    if (std::exchange(is_connected, false)) callbacks.disconnected(peer);
   }
 
   tcp::acceptor acceptor;
   Callbacks callbacks;
-  std::shared_ptr<Link> client;
+  std::shared_ptr<ByteLink> client;
   std::string peer;
+  bool is_websocket = false;
+  bool is_connected = false;  ///< a WebSocket has shaken hands; a raw link is connected at once
   bool has_cable = true;
 };
 
@@ -84,7 +97,8 @@ TcpServer::~TcpServer() {
   if (state_->client) state_->client->close();
 }
 
-std::expected<TcpAddress, ListenError> TcpServer::listen(const TcpAddress& address) {
+std::expected<ServeAddress, ListenError> TcpServer::listen(const ServeAddress& serve) {
+  const TcpAddress& address = serve.tcp;
   boost::system::error_code fault;
   tcp::resolver resolver(state_->acceptor.get_executor());
   const auto found = resolver.resolve(address.host, std::to_string(address.port), tcp::resolver::passive, fault);
@@ -98,12 +112,14 @@ std::expected<TcpAddress, ListenError> TcpServer::listen(const TcpAddress& addre
   if (!fault) acceptor.bind(endpoint, fault);
   if (!fault) acceptor.listen(asio::socket_base::max_listen_connections, fault);
   if (fault) return std::unexpected(error_of(fault));
+  state_->is_websocket = serve.websocket;
   state_->accept();
-  return TcpAddress{.host = address.host, .port = acceptor.local_endpoint(fault).port()};
+  const std::uint16_t port = acceptor.local_endpoint(fault).port();
+  return ServeAddress{.tcp = {.host = address.host, .port = port}, .websocket = serve.websocket};
 }
 
 void TcpServer::write(std::string_view bytes) {
-  if (state_->client) state_->client->write_lines(bytes);
+  if (state_->is_connected) state_->client->write_lines(bytes);
 }
 
 void TcpServer::go_on() {

@@ -18,6 +18,9 @@ struct Openers {
   std::unique_ptr<Transport> operator()(const TcpAddress& address) {
     return open_tcp(loop, address, std::move(callbacks));
   }
+  std::unique_ptr<Transport> operator()(const WebSocketAddress& address) {
+    return open_websocket(loop, address, std::move(callbacks));
+  }
   std::unique_ptr<Transport> operator()(const PtyAddress& address) {
     return open_pty(loop, address, std::move(callbacks));
   }
@@ -30,7 +33,8 @@ struct Openers {
 std::string place_of(const MachineUrl& url) {
   struct Printer {
     std::string operator()(const SerialAddress& serial) const { return serial.path; }
-    std::string operator()(const TcpAddress& tcp) const { return to_string(tcp).substr(sizeof("tcp://") - 1); }
+    std::string operator()(const TcpAddress& tcp) const { return host_and_port(tcp.host, tcp.port); }
+    std::string operator()(const WebSocketAddress& ws) const { return host_and_port(ws.host, ws.port); }
     std::string operator()(const PtyAddress& pty) const { return pty.path; }
     std::string operator()(const VirtualAddress& machine) const {
       return fmt::format("the virtual {}", name_of(machine.personality->firmware));
@@ -67,6 +71,10 @@ std::string explain(const MachineUrl& url, const TransportError& error) {
       return fmt::format(
           "{} refused the connection: check the port number, and that the machine is on and not connected to another "
           "sender.",
+          place);
+    case TransportFault::NotAWebSocket:
+      return fmt::format(
+          "{} answers, but not as a WebSocket: check port and path, or try the machine's telnet port with tcp://.",
           place);
     case TransportFault::Unreachable:
       return fmt::format("There is no way through the network to {}: check cable, Wi-Fi and address.", place);

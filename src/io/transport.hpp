@@ -20,7 +20,8 @@ enum class TransportFault {
   NotAPort,  ///< the path is something else: a directory, a file, a disk
   BaudRefused,
   HostUnknown,
-  Refused,  ///< nobody listens there
+  Refused,        ///< nobody listens there
+  NotAWebSocket,  ///< somebody answers there, and means something else
   Unreachable,
   TimedOut,
   Unplugged,  ///< a port that was open is gone
@@ -66,6 +67,8 @@ class Transport {
                                                      LinkCallbacks callbacks);
 [[nodiscard]] std::unique_ptr<Transport> open_pty(EventLoop& loop, const PtyAddress& address, LinkCallbacks callbacks);
 [[nodiscard]] std::unique_ptr<Transport> open_tcp(EventLoop& loop, const TcpAddress& address, LinkCallbacks callbacks);
+[[nodiscard]] std::unique_ptr<Transport> open_websocket(EventLoop& loop, const WebSocketAddress& address,
+                                                        LinkCallbacks callbacks);
 [[nodiscard]] std::unique_ptr<Transport> open_virtual(EventLoop& loop, const VirtualAddress& address,
                                                       LinkCallbacks callbacks);
 

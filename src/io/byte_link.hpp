@@ -1,0 +1,43 @@
+#pragma once
+// A connected link, whatever frames its bytes: what a transport writes to and a server serves. Loop's thread only.
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string_view>
+
+#include <boost/system/error_code.hpp>
+
+namespace kerf::io {
+
+/// Lives as long as an operation of it is under way. Nothing is called after close() nor after `lost`.
+class ByteLink {
+ public:
+  struct Callbacks {
+    std::function<void(std::string_view)> received;
+    std::function<void(boost::system::error_code)> lost;
+    /// Most bytes that `received` may be given now; without it, any number. At 0 nothing is read until go_on().
+    std::function<std::size_t()> room = {};
+    /// Bytes can pass from now on.
+    std::function<void()> opened = {};
+  };
+
+  ByteLink() = default;
+  virtual ~ByteLink() = default;
+  ByteLink(const ByteLink&) = delete;
+  ByteLink& operator=(const ByteLink&) = delete;
+
+  virtual void start() = 0;
+  /// There may be room again.
+  virtual void go_on() = 0;
+  /// Goes out before every line byte that the operating system does not have yet.
+  virtual void write_realtime(std::string_view bytes) = 0;
+  virtual void write_lines(std::string_view bytes) = 0;
+  virtual void close() = 0;
+};
+
+/// Most bytes that are given to the operating system at once: small enough that a realtime byte never waits long behind
+/// one piece, large enough for a fast link.
+inline constexpr std::size_t kMostBytesAtOnce = 256;
+
+}  // namespace kerf::io
