@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -96,7 +97,8 @@ class Watch {
     host_ = std::make_unique<io::SessionHost>(
         loop_, url_, options,
         io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
-                                   .lost = [this](const io::TransportError& error) { on_lost(error); }},
+                                   .lost = [this](const io::TransportError& error) { on_lost(error); },
+                                   .interrupted = [this](const io::TransportError& error) { on_interrupted(error); }},
         recording_);
     loop_.run();
     return status_.value_or(ExitStatus::Done);
@@ -132,6 +134,14 @@ class Watch {
     }
   }
 
+  /// Once a loss, however often somebody takes the connection and closes it again.
+  void on_interrupted(const io::TransportError& error) {
+    const std::uint64_t reports = host_->session().snapshot().reports;
+    if (status_ || std::exchange(told_at_report_, reports) == reports) return;
+    if (!json_ && has_shown_) put("\n");
+    complain(io::explain(url_, error) + " Kerf connects again as soon as it can.");
+  }
+
   void on_lost(const io::TransportError& error) {
     fail(io::explain(url_, error), has_shown_ ? ExitStatus::Interrupted : ExitStatus::NoConnection);
   }
@@ -157,6 +167,7 @@ class Watch {
   Line line_;
   Changes changes_;
   bool has_shown_ = false;
+  std::optional<std::uint64_t> told_at_report_;
   std::optional<ExitStatus> status_;
   std::unique_ptr<io::SessionHost> host_;
 };

@@ -67,6 +67,16 @@ class Reconnect(LiveTest):
         self.machine(tcp=False, pty_path=path)
         self.comes_back("pty://" + path)
 
+    def test_a_watcher_goes_on_watching(self):
+        machine = self.machine()
+        with Running("status", "--watch", "--machine", machine.url) as watch:
+            watch.wait_for('"state":"Idle"')
+            self.cable.order("link cut")
+            self.cable.order("link restore")
+            machine.wait_for("went away.[^$]*connected")
+            with_link = len(watch.output)
+            wait_until(lambda: watch.read(0.2) or '"state":"Idle"' in watch.output[with_link:], what="a new report")
+
     def test_a_machine_that_moves_is_watched_and_left_alone(self):
         machine = self.machine(speed="1")
         with OnTerminal("console", "--machine", machine.url) as console:
