@@ -93,6 +93,7 @@ struct CodesOptions {
 struct ConsoleOptions {
   std::string machine = kDefaultMachine;
   io::RecordingOptions recording{};
+  bool may_reset = false;
 };
 [[nodiscard]] ExitStatus console(const ConsoleOptions& options);
 

@@ -38,14 +38,18 @@ std::string history_file() {
 
 class Console {
  public:
-  Console(io::EventLoop& loop, io::MachineUrl url, const io::RecordingOptions& recording)
-      : loop_(loop), url_(std::move(url)), recording_(recording), last_words_(loop) {}
+  Console(io::EventLoop& loop, io::MachineUrl url, const ConsoleOptions& options)
+      : loop_(loop),
+        url_(std::move(url)),
+        recording_(options.recording),
+        may_reset_(options.may_reset),
+        last_words_(loop) {}
 
   ExitStatus run() {
     constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
     const io::SignalWatch signals(loop_, kSignals, [this](int signal) { on_signal(signal); });
     session::SessionOptions options;
-    options.reset_policy = session::ResetPolicy::WhenSilent;
+    options.reset_policy = may_reset_ ? session::ResetPolicy::WhenSilentToo : session::ResetPolicy::Never;
     io::SessionHost::Callbacks callbacks{.event = [this](const session::Event& event) { on_event(event); },
                                          .lost = [this](const io::TransportError& error) { on_lost(error); },
                                          .noted = [this](const std::string& sentence) { show(sentence); }};
@@ -69,6 +73,7 @@ class Console {
     show(found.sentence);
     begin();
   }
+  void on(const session::ControllerReset& reset) { show(reset.reason); }
   void on(const session::ControllerBusy& busy) {
     show(busy.sentence + (input_ ? "" : " You may watch and use the realtime keys."));
     begin();
@@ -230,6 +235,7 @@ class Console {
   io::EventLoop& loop_;
   const io::MachineUrl url_;
   const io::RecordingOptions& recording_;
+  const bool may_reset_;
   io::Timer last_words_;
   std::optional<ExitStatus> status_;
   int reports_asked_ = 0;
@@ -248,7 +254,7 @@ ExitStatus console(const ConsoleOptions& options) {
     return ExitStatus::Usage;
   }
   io::EventLoop loop;
-  Console console(loop, *url, options.recording);
+  Console console(loop, *url, options);
   return console.run();
 }
 

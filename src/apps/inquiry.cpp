@@ -24,7 +24,7 @@ class Visitor {
 
   ExitStatus run() {
     session::SessionOptions options;
-    options.reset_policy = session::ResetPolicy::WhenSilent;  // somebody's modal state must survive a question
+    options.reset_policy = session::ResetPolicy::Never;  // somebody's modal state must survive a question
     options.enumerate = options_.enumerate;
     host_ = std::make_unique<io::SessionHost>(
         loop_, url_, options,

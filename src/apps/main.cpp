@@ -203,6 +203,9 @@ void add_console(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::ConsoleOptions>();
   CLI::App* command = kerf.add_subcommand("console", "Type to a controller; answers come with their meaning");
   add_machine(*command, options->machine, options->recording);
+  command->add_flag(
+      "--reset", options->may_reset,
+      "Reset a controller that answers nothing, as one in a hard-limit alarm; whatever it does, it stops");
   command->footer(
       "\nAt the start of a line these keys act at once: ? status, ! feed hold, ~ cycle start, Ctrl-X reset.\n"
       "Arrow up brings back earlier lines; Ctrl-D leaves.\n"

@@ -122,7 +122,7 @@ ExitStatus record(const RecordOptions& options) {
     run(Listener(loop, *url, options.recording, callbacks));
   } else {
     // A machine that is only watched keeps its modal state.
-    run(io::SessionHost(loop, *url, {.reset_policy = session::ResetPolicy::WhenSilent}, callbacks, options.recording));
+    run(io::SessionHost(loop, *url, {.reset_policy = session::ResetPolicy::Never}, callbacks, options.recording));
   }
   return status;
 }

@@ -92,7 +92,7 @@ class Watch {
     constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
     const io::SignalWatch signals(loop_, kSignals, [this](int) { finish(ExitStatus::Done); });
     session::SessionOptions options;
-    options.reset_policy = session::ResetPolicy::WhenSilent;
+    options.reset_policy = session::ResetPolicy::Never;
     options.enumerate = false;
     host_ = std::make_unique<io::SessionHost>(
         loop_, url_, options,

@@ -271,6 +271,12 @@ bool VirtualController::pendant_commands() const {
   return parts_->board.pendant_commands;
 }
 
+bool VirtualController::is_moving() const {
+  using enum motion::ExecutorPhase;
+  const auto phase = parts_->board.executor.phase();
+  return phase == Running || phase == Decelerating || parts_->board.state == MachineState::Home;
+}
+
 std::uint32_t VirtualController::lines_begun() const {
   return parts_->board.blocks_begun;
 }

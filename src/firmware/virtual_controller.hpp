@@ -67,6 +67,8 @@ class VirtualController {
   [[nodiscard]] std::optional<int> substate() const;
   /// The pendant has command, and the main wire is deaf.
   [[nodiscard]] bool pendant_commands() const;
+  /// Motors turn, or will by themselves: between the moves of a homing cycle.
+  [[nodiscard]] bool is_moving() const;
   /// G-code lines that were begun since power-on; `$` lines and empty ones do not count.
   [[nodiscard]] std::uint32_t lines_begun() const;
   /// The world around it. Somebody who replaces a controller takes it along, before power_on().

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "io/udev_objects.hpp"
 
@@ -96,6 +99,17 @@ std::string lasting_name(const std::string& name, std::span<const SerialPort> po
   // Makers give a whole batch the same number ("0001"): then it says nothing.
   const auto has_its_number = [&](const SerialPort& port) { return port.serial_number == found->serial_number; };
   return std::ranges::count_if(ports, has_its_number) == 1 ? std::string(kByNumber) + found->serial_number : name;
+}
+
+SerialPort find_serial_port(const std::string& path) {
+  std::error_code ignored;
+  const auto real = std::filesystem::canonical(path, ignored);
+  for (SerialPort& port : list_serial_ports()) {
+    if (port.path == real.string()) return std::move(port);
+  }
+  SerialPort unknown;
+  unknown.path = path;
+  return unknown;
 }
 
 }  // namespace kerf::io

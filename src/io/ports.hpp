@@ -27,6 +27,8 @@ BOOST_DESCRIBE_STRUCT(SerialPort, (), (path, url, lasting_url, by_id, vendor, pr
 /// Ports that a controller could be on, in the order of their names: USB (`ttyUSB`, `ttyACM`) and real UARTs, without
 /// the empty sockets that the kernel lists as `ttyS*`.
 [[nodiscard]] std::vector<SerialPort> list_serial_ports();
+/// The port at `path`, which may be a link to it; only the path is filled in for one that is not in that list.
+[[nodiscard]] SerialPort find_serial_port(const std::string& path);
 
 /// Where the port of that name is now: `by-id/NAME` is udev's name, `usb/NUMBER` a USB serial number, anything else a
 /// path already. Empty when no port has the number.

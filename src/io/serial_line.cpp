@@ -9,9 +9,8 @@
 #include <sys/sysmacros.h>
 
 namespace kerf::io {
-namespace {
 
-/// A pty's client side (Linux: UNIX98_PTY_SLAVE_MAJOR and the seven after it).
+// Linux: UNIX98_PTY_SLAVE_MAJOR and the seven after it.
 bool is_pty(int descriptor) {
   constexpr unsigned kFirstMajor = 136;
   constexpr unsigned kLastMajor = 143;
@@ -19,8 +18,6 @@ bool is_pty(int descriptor) {
   if (::fstat(descriptor, &status) != 0) return false;
   return major(status.st_rdev) >= kFirstMajor && major(status.st_rdev) <= kLastMajor;
 }
-
-}  // namespace
 
 int prepare_serial_line(int descriptor, int baud) {
   termios2 line{};
@@ -30,6 +27,17 @@ int prepare_serial_line(int descriptor, int baud) {
   line.c_ispeed = static_cast<speed_t>(baud);
   line.c_ospeed = static_cast<speed_t>(baud);
   return ::ioctl(descriptor, TCSETS2, &line) == 0 ? 0 : errno;
+}
+
+bool lets_lines_fall(int descriptor) {
+  termios2 line{};
+  return ::ioctl(descriptor, TCGETS2, &line) == 0 && (line.c_cflag & HUPCL) != 0;
+}
+
+void raise_control_lines(int descriptor) {
+  const int lines = TIOCM_DTR | TIOCM_RTS;
+  // A pty has none, and says so.
+  ::ioctl(descriptor, TIOCMBIS, &lines);
 }
 
 int claim_serial_line(int descriptor) {

@@ -10,6 +10,7 @@
 #include "io/serial_line.hpp"
 #include "io/stream_link.hpp"
 #include "io/transport.hpp"
+#include "io/usb_policy.hpp"
 
 namespace kerf::io {
 namespace {
@@ -65,6 +66,8 @@ class SerialTransport final : public Transport {
     if (link_) link_->close();
   }
 
+  [[nodiscard]] machine::LinkOpening opening() const override { return opening_; }
+
   void write_realtime(std::string_view bytes) override {
     if (link_) link_->write_realtime(bytes);
   }
@@ -76,17 +79,21 @@ class SerialTransport final : public Transport {
  private:
   using Link = StreamLink<asio::serial_port>;
 
-  static int open(asio::serial_port& port, const std::string& path, int baud) {
+  int open(asio::serial_port& port, const std::string& path, int baud) {
     boost::system::error_code fault;
     port.open(path, fault);  // raw mode, not the controlling terminal
     if (fault) return fault.value();
     const int descriptor = port.native_handle();
     if (const int claimed = claim_serial_line(descriptor); claimed != 0) return claimed;
+    const bool lines_fell = lets_lines_fall(descriptor);
     if (const int prepared = prepare_serial_line(descriptor, baud); prepared != 0) return prepared;
+    raise_control_lines(descriptor);
     discard_serial_input(descriptor);
+    if (!is_pty(descriptor)) opening_ = opening_of(find_serial_port(path), lines_fell);
     return 0;
   }
 
+  machine::LinkOpening opening_;
   std::shared_ptr<bool> alive_;
   std::shared_ptr<Link> link_;
 };

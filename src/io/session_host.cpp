@@ -35,7 +35,7 @@ SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::Sessio
             {.opened =
                  [this] {
                    is_open_ = true;
-                   session_.on_open(loop_.now());
+                   session_.on_open(loop_.now(), link_.transport().opening());
                    settle();
                  },
              .received =

@@ -10,6 +10,7 @@
 
 #include "io/event_loop.hpp"
 #include "io/machine_url.hpp"
+#include "sender/machine/link_opening.hpp"
 
 namespace kerf::io {
 
@@ -53,6 +54,8 @@ class Transport {
   /// Realtime bytes: they go out before every line byte that the operating system does not have yet.
   virtual void write_realtime(std::string_view bytes) = 0;
   virtual void write_lines(std::string_view bytes) = 0;
+  /// What was done to open it; said from `opened` on.
+  [[nodiscard]] virtual machine::LinkOpening opening() const { return {}; }
 };
 
 /// Starts to open the link; the outcome comes by a callback. A TCP connection gives up after 5 s.

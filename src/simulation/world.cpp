@@ -60,18 +60,21 @@ void World::open() {
   // What was said before nobody heard.
   static_cast<void>(rig_.take_outbox());
   linked_ = true;
-  session_.on_open(now_);
+  watch_.on_link_changed();
+  session_.on_open(now_, {.sentence = {}, .may_restart = options_.opening_resets});
   if (options_.opening_resets) restart_controller();
   settle();
 }
 
 void World::restart_controller() {
+  watch_.on_power_changed();
   rig_.submit(now_, firmware::Reboot{});
   settle();
 }
 
 void World::cut_link() {
   linked_ = false;
+  watch_.on_link_changed();
   to_controller_.cut();
   from_controller_.cut();
   session_.on_closed(now_, session::LinkLoss::Unplugged);
@@ -79,6 +82,7 @@ void World::cut_link() {
 }
 
 void World::submit(const session::Command& command) {
+  watch_.on_command(command);
   session_.submit(now_, command);
   settle();
 }
@@ -104,6 +108,7 @@ bool World::play(std::string_view script) {
 }
 
 void World::inject_to_controller(std::string_view bytes) {
+  watch_.on_stranger();
   rig_.on_bytes(now_, bytes);
   settle();
 }
@@ -113,13 +118,21 @@ void World::inject_to_session(std::string_view bytes) {
   settle();
 }
 
+void World::touch_pendant(std::string_view bytes) {
+  watch_.on_stranger();
+  rig_.on_pendant_bytes(now_, bytes);
+  settle();
+}
+
 void World::record(Direction direction, const std::string& bytes) {
   if (options_.keeps_transcript) transcript_.push_back({.at = now_, .direction = direction, .bytes = bytes});
 }
 
 void World::settle() {
+  watch_.look(now_, rig_, session_.job() && !job::is_final(session_.job()->phase));
   auto out = session_.take_outbox();
   keep_records();
+  watch_.on_outbox(now_, out);
   if (linked_) {
     to_controller_.send(now_, out.realtime);
     to_controller_.send(now_, out.lines);
@@ -128,9 +141,7 @@ void World::settle() {
   most_in_flight_ = std::max(most_in_flight_, session_.bytes_in_flight());
   const std::string said = rig_.take_outbox();
   if (linked_) from_controller_.send(now_, said);
-  auto records = rig_.take_records();
-  log_.insert(log_.end(), std::make_move_iterator(records.begin()), std::make_move_iterator(records.end()));
-  static_cast<void>(rig_.take_lines_done());
+  keep_log();
   follow_link();
 }
 
@@ -138,6 +149,18 @@ void World::keep_records() {
   for (const session::Record& happened : session_.take_records()) {
     if (options_.keeps_wire_log) session::append_line(wire_log_, happened);
   }
+}
+
+void World::keep_log() {
+  for (auto& record : rig_.take_records()) {
+    // What a script does in somebody else's name.
+    if (record.what.contains("inject to") || record.what.contains("start") || record.what.contains("pendant")) {
+      watch_.on_stranger();
+    }
+    if (record.what.contains("reboot") || record.what.contains("power")) watch_.on_power_changed();
+    log_.push_back(std::move(record));
+  }
+  static_cast<void>(rig_.take_lines_done());
 }
 
 void World::follow_link() {

@@ -17,6 +17,7 @@
 #include "firmware/workcell.hpp"
 #include "sender/session/recorded_session.hpp"
 #include "sender/session/replay.hpp"
+#include "simulation/line_watch.hpp"
 #include "simulation/wire.hpp"
 
 namespace kerf::simulation {
@@ -71,6 +72,8 @@ class World {
   void inject_to_controller(std::string_view bytes);
   /// Bytes that reach the session although the controller did not send them.
   void inject_to_session(std::string_view bytes);
+  /// Bytes that the pendant sends, where one is fitted.
+  void touch_pendant(std::string_view bytes);
   /// The controller loses power and comes back with what it had stored.
   void restart_controller();
 
@@ -99,6 +102,8 @@ class World {
   [[nodiscard]] std::string transcript_text() const;
   /// The connection as a wire log has it: one record a line.
   [[nodiscard]] const std::string& wire_log() const { return wire_log_; }
+  /// Whether the sender kept its promise: no line to a machine in motion that it did not start.
+  [[nodiscard]] const LineWatch& line_watch() const { return watch_; }
   /// Most bytes that were ever unanswered at once.
   [[nodiscard]] std::size_t most_bytes_in_flight() const { return most_in_flight_; }
 
@@ -107,6 +112,7 @@ class World {
   void settle();
   void move_bytes();
   void follow_link();
+  void keep_log();
   void record(Direction direction, const std::string& bytes);
   void keep_records();
 
@@ -116,6 +122,7 @@ class World {
   session::RecordedSession session_;
   Wire to_controller_;
   Wire from_controller_;
+  LineWatch watch_;
   bool linked_ = false;
   std::vector<session::Event> events_;
   std::vector<firmware::RigRecord> log_;

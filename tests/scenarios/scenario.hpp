@@ -18,11 +18,13 @@ namespace kerf::scenarios {
 
 using namespace kerf::simulation;
 
-/// A world of which the wire log is replayed at its end: it must give the same bytes.
+/// A world of which the wire log is replayed at its end: it must give the same bytes. And its watch must have seen no
+/// line that went to a machine in motion which the sender did not start, and no reset without a word.
 class World : public simulation::World {
  public:
   using simulation::World::World;
   ~World() {
+    for (const std::string& promise : line_watch().broken()) ADD_FAILURE() << promise;
     if (const auto stop = session::replay_text(wire_log())) ADD_FAILURE() << "Replay: " << session::sentence_of(*stop);
   }
   World(const World&) = delete;

@@ -116,6 +116,7 @@ enum class Refused {
   PendantInControl,  ///< a pendant has the machine
   MachineNotIdle,    ///< needs Idle or Check
   MachineInAlarm,    ///< unlock or home first
+  ForeignMotion,     ///< it moves, and Kerf did not start that
   JobUnderWay,       ///< another job runs
   NoJob,             ///< there is nothing to hold, resume or stop
   NotAtRest,         ///< resume needs Hold:0, Door:0 or Tool
@@ -127,8 +128,8 @@ enum class Refused {
   NoPendant,         ///< there is no control to take back
   ControlNotGiven,   ///< the controller does not give control back on this link
 };
-BOOST_DESCRIBE_ENUM(Refused, NotConnected, NotIdentified, PendantInControl, MachineNotIdle, MachineInAlarm, JobUnderWay,
-                    NoJob, NotAtRest, LineTooLong, RealtimeInLine, SettingsUnderWay, NeverSent, NotAnswering, NoPendant,
-                    ControlNotGiven)
+BOOST_DESCRIBE_ENUM(Refused, NotConnected, NotIdentified, PendantInControl, MachineNotIdle, MachineInAlarm,
+                    ForeignMotion, JobUnderWay, NoJob, NotAtRest, LineTooLong, RealtimeInLine, SettingsUnderWay,
+                    NeverSent, NotAnswering, NoPendant, ControlNotGiven)
 
 }  // namespace kerf::session

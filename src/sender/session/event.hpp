@@ -38,6 +38,12 @@ struct LineReceived {
   bool for_kerf = false;
 };
 
+/// The handshake moved from one stage to another: when, why, and what it was seen from.
+struct HandshakeMoved {
+  machine::StageChange change;
+};
+BOOST_DESCRIBE_STRUCT(HandshakeMoved, (), (change))
+
 /// The handshake is under way, in one sentence.
 struct HandshakeNoted {
   std::string sentence;
@@ -175,9 +181,10 @@ struct SettingsDrifted {
 };
 BOOST_DESCRIBE_STRUCT(SettingsDrifted, (), (differences, sentence))
 
-using Event = std::variant<LineSent, LineReceived, HandshakeNoted, ControllerReset, ControllerBusy, ControllerFound,
-                           HandshakeFailed, StatusReported, ControllerRestarted, LinesLost, AlarmRaised, LineRefused,
-                           JobStarted, JobProgressed, JobEnded, CommandRefused, LinkSilent, LinkAnswering,
-                           SettingWritten, SettingsChanged, SettingsDrifted, PendantTookOver, PendantReleased>;
+using Event =
+    std::variant<LineSent, LineReceived, HandshakeMoved, HandshakeNoted, ControllerReset, ControllerBusy,
+                 ControllerFound, HandshakeFailed, StatusReported, ControllerRestarted, LinesLost, AlarmRaised,
+                 LineRefused, JobStarted, JobProgressed, JobEnded, CommandRefused, LinkSilent, LinkAnswering,
+                 SettingWritten, SettingsChanged, SettingsDrifted, PendantTookOver, PendantReleased>;
 
 }  // namespace kerf::session

@@ -26,7 +26,9 @@ struct LogHeader {
 };
 
 /// The link is open.
-struct LinkOpened {};
+struct LinkOpened {
+  machine::LinkOpening opening{};
+};
 
 /// Bytes from the controller, as one read gave them.
 struct BytesReceived {
@@ -64,7 +66,7 @@ struct LinkGone {
 };
 
 BOOST_DESCRIBE_STRUCT(LogHeader, (), (version, kerf, machine, began, part, listening, options))
-BOOST_DESCRIBE_STRUCT(LinkOpened, (), ())
+BOOST_DESCRIBE_STRUCT(LinkOpened, (), (opening))
 BOOST_DESCRIBE_STRUCT(BytesReceived, (), (bytes))
 BOOST_DESCRIBE_STRUCT(BytesSent, (), (realtime, lines))
 BOOST_DESCRIBE_STRUCT(ProgramLoaded, (), (name, path, size_bytes, hash, text))

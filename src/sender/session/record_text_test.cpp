@@ -38,7 +38,7 @@ TEST(RecordText, IsOneObjectALine) {
 TEST(RecordText, EveryKindComesBack) {
   SessionOptions options;
   options.link = {.baud = 115200, .network = true};
-  options.reset_policy = ResetPolicy::WhenSilent;
+  options.reset_policy = ResetPolicy::Never;
   options.enumerate = false;
   const std::vector<decltype(Record::what)> all = {
       LogHeader{

@@ -35,9 +35,9 @@ Command masked(Command command, PasswordMask& mask) {
 
 }  // namespace
 
-void RecordedSession::on_open(Instant now) {
-  note(now, LinkOpened{});
-  Session::on_open(now);
+void RecordedSession::on_open(Instant now, const machine::LinkOpening& opening) {
+  note(now, LinkOpened{opening});
+  Session::on_open(now, opening);
   settle(now);
 }
 

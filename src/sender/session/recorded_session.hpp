@@ -18,7 +18,7 @@ class RecordedSession : public Session {
  public:
   explicit RecordedSession(const SessionOptions& options = {}) : Session(options) {}
 
-  void on_open(Instant now);
+  void on_open(Instant now, const machine::LinkOpening& opening = {});
   void on_bytes(Instant now, std::string_view bytes);
   void on_closed(Instant now, LinkLoss loss);
   void submit(Instant now, const Command& command);

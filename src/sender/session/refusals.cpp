@@ -14,6 +14,7 @@ std::string sentence_of(Refused reason) {
              "far as the controller hears this link.";
     case Refused::MachineNotIdle: return "The machine is not idle; wait until it stands still, or stop it.";
     case Refused::MachineInAlarm: return "The machine is in alarm; find the cause, then unlock, home or reset it.";
+    case Refused::ForeignMotion: return "The machine is moving and Kerf did not start it; wait until it stands still.";
     case Refused::JobUnderWay: return "A job is under way; stop it first.";
     case Refused::NoJob: return "There is no job to do that with.";
     case Refused::NotAtRest: return "The machine is not in a finished hold; resume when it stands still.";

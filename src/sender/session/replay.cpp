@@ -50,9 +50,9 @@ Replay::Stop Replay::follow(Instant at, const LogHeader& header) {
   return std::nullopt;
 }
 
-Replay::Stop Replay::follow(Instant at, const LinkOpened&) {
+Replay::Stop Replay::follow(Instant at, const LinkOpened& opened) {
   if (listening_) return std::nullopt;
-  session_->on_open(at);
+  session_->on_open(at, opened.opening);
   settle();
   return std::nullopt;
 }

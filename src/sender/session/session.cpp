@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "common/base/overloaded.hpp"
+#include "sender/machine/handshake_sentences.hpp"
 #include "sender/machine/lexicon.hpp"
 #include "sender/machine/rest.hpp"
 
@@ -33,11 +34,13 @@ streaming::SoloPolicy solo_policy_of(vocabulary::Firmware firmware) {
 
 }  // namespace
 
-Session::Session(SessionOptions options) : options_(options), handshake_(options.reset_policy, options.enumerate) {
+Session::Session(SessionOptions options)
+    : options_(options),
+      handshake_({.reset_policy = options.reset_policy, .enumerate = options.enumerate, .baud = options.link.baud}) {
   streamer_.configure(kCautiousWindow, streaming::SoloPolicy::EveryLine);
 }
 
-void Session::on_open(Instant now) {
+void Session::on_open(Instant now, const machine::LinkOpening& opening) {
   open_ = true;
   reader_.reset();
   model_.forget();
@@ -53,7 +56,7 @@ void Session::on_open(Instant now) {
   incidents_.forget();
   incidents_.clear_alarm();
   parser_report_asked_ = automatic_reports_asked_ = false;
-  handshake_.on_open(now);
+  handshake_.on_open(now, opening);
   settle_everything(now);
 }
 
@@ -69,7 +72,7 @@ void Session::on_closed(Instant now, LinkLoss) {
   refresh_.forget();
   pendant_.forget();
   reset_pending_until_.reset();
-  handshake_.on_closed();
+  handshake_.on_closed(now);
   if (has_job()) job_->on_link_closed(now);
   if (changes_settings()) settings_change_->interrupt("the link was closed");
   settle_everything(now);
@@ -79,6 +82,7 @@ void Session::on_closed(Instant now, LinkLoss) {
 
 void Session::on_bytes(Instant now, std::string_view bytes) {
   if (!open_) return;
+  handshake_.on_bytes(bytes);
   for (const auto& received : reader_.read(bytes)) {
     handle(now, received);
     settle_everything(now);
@@ -112,6 +116,7 @@ void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
 
 void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code) {
   if (!line) return;
+  gate_.on_activity(now);
   if (error_code == 0) {
     model_.on_line_accepted(line->text);
     incidents_.on_accepted(*line);
@@ -170,6 +175,10 @@ void Session::on_report(Instant now, MachineState before) {
   follow_pendant(now);
   on_alarm_state();
   tell(StatusReported{.before = before, .after = snapshot().state});
+  gate_.on_report(now, snapshot(), has_job() || !ledger().empty());
+  if (gate_.take_notice() && is_ready()) {
+    tell(ControllerBusy{.state = snapshot().state, .pendant = false, .sentence = machine::busy_sentence(snapshot())});
+  }
   if (changes_settings()) settings_change_->on_report(now, snapshot());
   if (!has_job()) return;
   job_->on_snapshot(now, snapshot());
@@ -225,6 +234,7 @@ void Session::settle_everything(Instant now) {
   follow_job(now);
   follow_settings(now);
   refresh(now);
+  if (outbox_.realtime.find_first_of("~\x81") != std::string::npos) gate_.on_activity(now);
   pump(now);
 }
 
@@ -234,6 +244,7 @@ void Session::follow_handshake(Instant now) {
 
 void Session::obey_handshake(Instant now, const machine::HandshakeOrder& order) {
   std::visit(base::Overloaded{
+                 [&](const machine::StageChange& change) { tell(HandshakeMoved{change}); },
                  [&](const machine::SendByte& send) {
                    if (send.byte == static_cast<std::uint8_t>(Realtime::SoftReset))
                      reset_controller(now);
@@ -257,6 +268,7 @@ void Session::obey_handshake(Instant now, const machine::HandshakeOrder& order) 
                                        solo_policy_of(capabilities().family));
                    refresh_.on_change(now);
                    poller_.start(now, poll_periods(options_.link));
+                   gate_.open(now);
                    tell(ControllerFound{success.sentence});
                    tell_drift();
                  },
@@ -297,7 +309,10 @@ void Session::obey_job(Instant now, job::JobOrder order) {
 
 void Session::pump(Instant now) {
   if (!open_ || snapshot().pendant_in_control) return;
+  // Before that the handshake looks after it.
+  if (is_ready() && gate_.verdict(now) != GateVerdict::Open) return;
   for (auto& line : streamer_.pump(now, outbox_.lines)) {
+    if (line.purpose != Purpose::Question) gate_.on_activity(now);
     tell(LineSent{.purpose = line.purpose, .file_line = line.file_line, .text = std::move(line.text)});
   }
 }

@@ -22,6 +22,7 @@
 #include "sender/session/command.hpp"
 #include "sender/session/event.hpp"
 #include "sender/session/incidents.hpp"
+#include "sender/session/line_gate.hpp"
 #include "sender/session/pendant_watch.hpp"
 #include "sender/session/settings_change.hpp"
 #include "sender/session/state_refresh.hpp"
@@ -36,7 +37,7 @@ using machine::ResetPolicy;
 struct SessionOptions {
   /// What the host knows about the link.
   streaming::LinkPace link{};
-  ResetPolicy reset_policy = ResetPolicy::WhenSilentOrIdle;
+  ResetPolicy reset_policy = ResetPolicy::WhenAtRest;
   /// Ask for the enumerations (`$EA` …) where the controller has them; `false` makes connecting faster.
   bool enumerate = true;
   /// Have the controller report by itself where it is set up to (grblHAL `$481`); else it is asked.
@@ -67,7 +68,7 @@ class Session {
  public:
   explicit Session(SessionOptions options = {});
 
-  void on_open(Instant now);
+  void on_open(Instant now, const machine::LinkOpening& opening = {});
   void on_bytes(Instant now, std::string_view bytes);
   void on_closed(Instant now, LinkLoss loss);
   void submit(Instant now, const Command& command);
@@ -119,6 +120,7 @@ class Session {
   [[nodiscard]] std::optional<Refused> why_no_line(Instant now, std::string_view text) const;
   [[nodiscard]] std::optional<std::string> why_text_is_eaten(std::string_view text) const;
   [[nodiscard]] std::optional<Refused> why_no_job(Instant now) const;
+  [[nodiscard]] std::optional<Refused> why_nothing(Instant now) const;
   [[nodiscard]] std::size_t longest_line_taken() const;
   void refuse(Refused reason, std::string detail = {});
 
@@ -165,6 +167,7 @@ class Session {
   bool parser_report_asked_ = false;
   /// 0x8C went out once; it toggles, so never twice.
   bool automatic_reports_asked_ = false;
+  LineGate gate_;
   std::optional<job::Job> job_;
   std::optional<job::JobState> job_state_;
   std::optional<SettingsChange> settings_change_;

@@ -40,11 +40,19 @@ std::size_t Session::longest_line_taken() const {
   return static_cast<std::size_t>(std::max(1, std::min(buffers.line_length, buffers.rx_usable - 1)));
 }
 
-std::optional<Refused> Session::why_no_job(Instant now) const {
+std::optional<Refused> Session::why_nothing(Instant now) const {
   if (snapshot().pendant_in_control) return Refused::PendantInControl;
   if (!is_ready()) return Refused::NotIdentified;
   if (has_job()) return Refused::JobUnderWay;
   if (changes_settings()) return Refused::SettingsUnderWay;
+  if (gate_.sees_foreign_motion()) return Refused::ForeignMotion;
+  // With a line owed, that line may be the reason: Grbl says nothing while it homes.
+  if (gate_.verdict(now) == GateVerdict::Blind && ledger().empty()) return Refused::NotAnswering;
+  return std::nullopt;
+}
+
+std::optional<Refused> Session::why_no_job(Instant now) const {
+  if (const auto reason = why_nothing(now)) return reason;
   if (snapshot().state == MachineState::Alarm) return Refused::MachineInAlarm;
   const bool idle = snapshot().state == MachineState::Idle || snapshot().state == MachineState::Check;
   if (!idle || !snapshot().controller_file.empty()) return Refused::MachineNotIdle;
@@ -111,10 +119,7 @@ void Session::obey(Instant now, const AbortJob&) {
 }
 
 std::optional<Refused> Session::why_no_line(Instant now, std::string_view text) const {
-  if (snapshot().pendant_in_control) return Refused::PendantInControl;
-  if (!is_ready()) return Refused::NotIdentified;
-  if (has_job()) return Refused::JobUnderWay;
-  if (changes_settings()) return Refused::SettingsUnderWay;
+  if (const auto reason = why_nothing(now)) return reason;
   if (snapshot().reset_required) return Refused::MachineInAlarm;
   if (poller_.is_silent(now) && !may_be_silent()) return Refused::NotAnswering;
   if (why_text_is_eaten(text)) return Refused::RealtimeInLine;

@@ -60,6 +60,7 @@ void Session::ask_for_reports(Instant now) {
     send_byte(Realtime::StatusQuery);
   }
   poller_.on_asked(now);
+  gate_.on_asked(now);
 }
 
 // Grbl answers no question while it homes, and none in a critical alarm (protocol.md 3.4, 6.6).

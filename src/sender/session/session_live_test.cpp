@@ -70,7 +70,6 @@ TEST(LiveState, OffsetsAreAskedAgainWhenALineMayHaveChangedThem) {
 TEST(LiveState, NothingIsAskedInMotionOrDuringAJob) {
   auto talk = connected(grbl_replies());
   talk.replies.status = "<Run|MPos:0.000,0.000,0.000|FS:500,0>\r\n";
-  talk.pass(1s);
   talk.submit(SendLine{"G1X10F100"});
   talk.pass(20s);
   EXPECT_THAT(talk.lines_sent, ElementsAre("G1X10F100"));

@@ -50,6 +50,7 @@ void Session::follow_settings(Instant now) {
             [&](const AskForReport&) {
               send_byte(vocabulary::Realtime::StatusQuery);
               poller_.on_asked(now);
+              gate_.on_asked(now);
             },
             [&](SendSettingLine& line) { streamer_.enqueue(Purpose::Setting, std::move(line.text)); },
             [&](NoteSetting& note) {

@@ -122,7 +122,7 @@ TEST(SessionSettings, AMovingMachineIsNotWrittenTo) {
   talk.lines_sent.clear();
   talk.change({{"110", "600"}});
   EXPECT_THAT(talk.lines_sent, IsEmpty());
-  EXPECT_EQ(talk.told<CommandRefused>().back().reason, Refused::MachineNotIdle);
+  EXPECT_EQ(talk.told<CommandRefused>().back().reason, Refused::ForeignMotion);
 }
 
 TEST(SessionSettings, AMachineThatBeginsToMoveIsLeftAlone) {

@@ -1,0 +1,45 @@
+#include "sender/machine/interview.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace kerf::machine {
+
+void Interview::begin(bool brief) {
+  brief_ = brief;
+  asked_.clear();
+}
+
+bool Interview::was_asked(const std::string& question) const {
+  return std::ranges::find(asked_, question) != asked_.end();
+}
+
+std::optional<std::string> Interview::next(const CapabilityCollector& known) {
+  for (std::string& question : questions(known)) {
+    if (was_asked(question)) continue;
+    asked_.push_back(question);
+    return std::move(question);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> Interview::questions(const CapabilityCollector& known) const {
+  if (brief_) return {"$G", "$#"};
+  const auto& dialect = known.dialect();
+  std::vector<std::string> list;
+  // The plain form comes first while the firmware is not known: Grbl refuses the other.
+  if (was_asked("$I") || !dialect.answers_full_status) list.emplace_back("$I");
+  if (dialect.answers_full_status) list.emplace_back("$I+");
+  list.insert(list.end(), {"$G", "$#", "$$"});
+  if (!enumerate_) return list;
+  const bool enumerates = known.has_token("ENUMS");
+  if (enumerates || dialect.can_enumerate_codes) list.insert(list.end(), {"$EA", "$EE"});
+  if (enumerates) list.insert(list.end(), {"$EG", "$ES"});
+  if (enumerates && known.has_token("SED")) list.emplace_back("$ESH");
+  if (enumerates) list.emplace_back("$SPINDLESH");
+  if (was_asked("$SPINDLESH") && !known.knows_spindles()) list.emplace_back("$SPINDLES");
+  if (!dialect.named_settings_query.empty()) list.emplace_back(dialect.named_settings_query);
+  return list;
+}
+
+}  // namespace kerf::machine
