@@ -11,18 +11,6 @@
 namespace kerf::bench {
 namespace {
 
-motion::Arc arc_of(const gcode::ArcMove& move, const vocabulary::AxisValues& start_mm) {
-  const gcode::PlaneAxes axes = gcode::axes_of(move.plane);
-  return {.start_mm = start_mm,
-          .target_mm = move.target_mm,
-          .center_offset_mm = move.center_offset_mm,
-          .radius_mm = move.radius_mm,
-          .plane_axes = {static_cast<std::uint8_t>(axes.first), static_cast<std::uint8_t>(axes.second),
-                         static_cast<std::uint8_t>(axes.linear)},
-          .clockwise = move.clockwise,
-          .turns = move.turns};
-}
-
 /// Calls `visit(actions)` for each line that has any.
 template <typename Visit>
 void interpret_lines(const BenchProgram& program, gcode::Interpreter& interpreter, Visit visit) {
@@ -68,7 +56,7 @@ std::vector<motion::PathLine> path_of(const BenchProgram& program, const simulat
                        path.push_back({.target_mm = at = move.target_mm, .feed = move.feed});
                      },
                      [&](const gcode::ArcMove& move) {
-                       motion::ArcChords chords(arc_of(move, at), rules, settings.motion());
+                       motion::ArcChords chords(motion::arc_of(move, at), rules, settings.motion());
                        while (const auto chord = chords.next())
                          path.push_back({.target_mm = *chord, .feed = move.feed});
                        at = move.target_mm;

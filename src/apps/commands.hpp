@@ -36,6 +36,7 @@ struct VirtualOptions {
   std::optional<int> tools;
   std::string ports;
   bool slow_memory = false;
+  bool spindle_encoder = false;
   bool welcome_on_connect = false;
   std::vector<std::string> scripts;
   std::string control;

@@ -114,6 +114,10 @@ void add_virtual_hardware(CLI::App& command, kerf::apps::VirtualOptions& options
       ->type_name("N,N,N,N")
       ->group(kHardware);
   command
+      .add_flag("--spindle-encoder", options.spindle_encoder,
+                "A spindle that tells its speed: G33, G76, G95 and ALARM:14 (grblhal)")
+      ->group(kHardware);
+  command
       .add_flag("--slow-memory", options.slow_memory,
                 "Memory that takes milliseconds a byte, in which bytes on the wire are lost (grbl)")
       ->group(kHardware);

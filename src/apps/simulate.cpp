@@ -46,7 +46,10 @@ std::optional<ProgramRun> load_run(const SimulateOptions& options) {
     complain(io::explain(program.error(), options.file));
     return std::nullopt;
   }
-  ProgramRun run{.program = *std::move(program), .link = *link, .inject = *std::move(inject)};
+  ProgramRun run{.program = *std::move(program),
+                 .link = *link,
+                 .inject = *std::move(inject),
+                 .keeps_blocks = !options.trace_file.empty()};
   if (!options.positions_file.empty()) run.sample_every = base::from_seconds(options.every_s);
   return run;
 }
@@ -92,7 +95,7 @@ Json as_json(const MotionTrace& trace) {
   constexpr double kMicroseconds = 1e6;
   Json json = Json::object();
   json["total_s"] = std::round(trace.total_s * kMicroseconds) / kMicroseconds;
-  json["blocks"] = trace.blocks.size();
+  json["blocks"] = trace.block_count;
   json["final_steps"] = trace.final_steps;
   json["final_mm"] = trace.final_mm;
   json["errors"] = std::move(errors);
@@ -103,7 +106,7 @@ Json as_json(const MotionTrace& trace) {
 }
 
 void tell(const MotionTrace& trace, const std::string& file) {
-  put("{} takes {:.3f} s: {} blocks, from {} of {} lines.\n", file, trace.total_s, trace.blocks.size(),
+  put("{} takes {:.3f} s: {} blocks, from {} of {} lines.\n", file, trace.total_s, trace.block_count,
       trace.lines_answered, trace.lines);
   std::string place;
   for (const double mm : trace.final_mm) place += fmt::format("{}{:.3f}", place.empty() ? "" : ", ", mm);

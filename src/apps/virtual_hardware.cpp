@@ -48,6 +48,9 @@ std::string explain(HardwareFault fault, const Hardware& wanted, const Personali
     case HardwareFault::SlowMemory:
       return fmt::format("{} goes on while it writes its memory: {}.", name,
                          way_out("--slow-memory", {.slow_memory = true}));
+    case HardwareFault::SpindleEncoder:
+      return fmt::format("{} knows no spindle encoder: {}.", name,
+                         way_out("--spindle-encoder", {.spindle_encoder = true}));
   }
   return {};
 }
@@ -64,7 +67,8 @@ std::expected<Personality, std::string> build_of(const VirtualOptions& options, 
   Hardware wanted{.axes = options.axes.value_or(0),
                   .tools = options.tools.value_or(0),
                   .ports = {},
-                  .slow_memory = options.slow_memory};
+                  .slow_memory = options.slow_memory,
+                  .spindle_encoder = options.spindle_encoder};
   if (options.axes && *options.axes == 0) wanted.axes = -1;
   if (!options.ports.empty()) {
     const auto ports = firmware::parse_port_counts(options.ports);

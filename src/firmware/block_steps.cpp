@@ -37,13 +37,37 @@ bool tool_change_needs_homing(const Board& board) {
   return (board.homed & wanted) != wanted;
 }
 
+bool cuts_thread(const gcode::LinearMove& move) {
+  return move.feed.synchronized && !move.feed.per_revolution;
+}
+
+/// Of the thread that the block cuts, if it does (G33, G76).
+std::optional<float> pitch_of(const std::vector<gcode::Action>& actions) {
+  for (const gcode::Action& action : actions) {
+    const auto* move = std::get_if<gcode::LinearMove>(&action);
+    if (move != nullptr && cuts_thread(*move)) return move->feed.rate_mm_per_min;
+  }
+  return std::nullopt;
+}
+
 /// Appends steps action by action; knows where each motion begins.
 class BlockSteps {
  public:
-  BlockSteps(Board& board, const AxisValues& start_mm, bool has_motion, Steps& steps)
-      : board_(board), at_mm_(start_mm), has_motion_(has_motion), steps_(steps) {}
+  BlockSteps(Board& board, const AxisValues& start_mm, const std::vector<gcode::Action>& actions, Steps& steps)
+      : board_(board),
+        at_mm_(start_mm),
+        has_motion_(std::ranges::any_of(actions, is_motion)),
+        pitch_mm_(board.settings.has_spindle_encoder() ? pitch_of(actions) : std::nullopt),
+        steps_(steps) {
+    for (const gcode::Action& action : actions) std::visit(*this, action);
+    if (in_thread_) steps_.insert(steps_.end(), {Synchronize{}, EndThread{}});
+  }
 
   void operator()(const gcode::LinearMove& move) {
+    if (pitch_mm_ && !in_thread_) begin_thread();
+    const bool cuts = cuts_thread(move);
+    if (cuts != cutting_) steps_.emplace_back(Synchronize{});
+    cutting_ = cuts;
     steps_.emplace_back(PlanMove{.move = move});
     at_mm_ = move.target_mm;
   }
@@ -104,7 +128,17 @@ class BlockSteps {
  private:
   /// grblHAL spindle_control.c: time to spin up or down.
   void wait_for_spindle(int delay_setting) {
-    if (board_.settings.number(delay_setting) > 0) steps_.emplace_back(board_.delay_step(delay_setting));
+    const double delay_s = board_.settings.number(delay_setting);
+    if (board_.settings.has_spindle_encoder() && board_.settings.number(setting::kSpindleAtSpeedTolerance) > 0) {
+      constexpr double kLongestSeconds = 60;
+      steps_.emplace_back(WaitForSpindle{.limit = base::from_seconds(delay_s > 0 ? delay_s : kLongestSeconds)});
+    } else if (delay_s > 0) {
+      steps_.emplace_back(board_.delay_step(delay_setting));
+    }
+  }
+  void begin_thread() {
+    in_thread_ = true;
+    steps_.insert(steps_.end(), {Synchronize{}, BeginThread{.pitch_mm = *pitch_mm_, .start_mm = at_mm_}});
   }
   void synchronised(const gcode::Action& action) {
     steps_.insert(steps_.end(), {Synchronize{}, Perform{.action = action}});
@@ -113,6 +147,9 @@ class BlockSteps {
   Board& board_;
   AxisValues at_mm_;
   bool has_motion_;
+  std::optional<float> pitch_mm_;
+  bool in_thread_ = false;
+  bool cutting_ = false;
   Steps& steps_;
 };
 
@@ -165,8 +202,7 @@ std::expected<void, ErrorCode> add_block_steps(Board& board, std::string_view bl
   std::vector<gcode::Action> actions;
   if (const auto result = board.interpreter.interpret(block, actions); !result) {
     // What was done before the block failed stays done: the motion before a macro that does not exist.
-    BlockSteps add{board, start_mm, std::ranges::any_of(actions, is_motion), steps};
-    for (const gcode::Action& action : actions) std::visit(add, action);
+    BlockSteps{board, start_mm, actions, steps};
     return result;
   }
   const auto changes_tool = [](const gcode::Action& action) {
@@ -176,8 +212,7 @@ std::expected<void, ErrorCode> add_block_steps(Board& board, std::string_view bl
     board.interpreter.abort_tool_change();
     return std::unexpected(ErrorCode::HomingRequired);
   }
-  BlockSteps add{board, start_mm, std::ranges::any_of(actions, is_motion), steps};
-  for (const gcode::Action& action : actions) std::visit(add, action);
+  BlockSteps{board, start_mm, actions, steps};
   note_scaling(board);
   if (board.switches.single_block && has_words(board, block))
     steps.insert(steps.end(), {Synchronize{}, HoldForCycleStart{}});

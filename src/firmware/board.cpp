@@ -269,6 +269,22 @@ float Board::spindle_rpm() const {
                              static_cast<float>(settings.number(setting::kSpindleMax))));
 }
 
+void Board::follow_spindle() {
+  if (!settings.has_spindle_encoder()) return;
+  const double turning = static_cast<double>(spindle_rpm()) * workcell.spindle_share();
+  const double rpm = workcell.is_encoder_plugged() ? turning : 0.0;
+  if (rpm == encoder.rpm()) return;
+  encoder.turn(now, rpm);
+  planner.set_spindle_rpm(static_cast<float>(rpm));
+}
+
+bool Board::is_spindle_at_speed() const {
+  constexpr double kPercent = 0.01;
+  const double wanted = static_cast<double>(spindle_rpm());
+  const double tolerance = settings.number(setting::kSpindleAtSpeedTolerance) * kPercent;
+  return encoder.rpm() >= wanted * (1 - tolerance) && encoder.rpm() <= wanted * (1 + tolerance);
+}
+
 void Board::sync_position() {
   planner.sync_position(steps());
   interpreter.sync_position(position_mm());
@@ -301,12 +317,14 @@ void Board::apply_settings() {
 
 void Board::apply_overrides() {
   planner.set_overrides(overrides.feed_acts ? overrides.feed : 100, overrides.feed_acts ? overrides.rapid : 100);
+  follow_spindle();
 }
 
 void Board::set_accessories(const Accessories& wanted) {
   if (wanted == accessories) return;
   accessories = wanted;
   owe_accessories();
+  follow_spindle();
 }
 
 void Board::owe_work_offset() {

@@ -26,6 +26,7 @@
 #include "firmware/ports.hpp"
 #include "firmware/settings_store.hpp"
 #include "firmware/slow_memory.hpp"
+#include "firmware/spindle_encoder.hpp"
 #include "firmware/step.hpp"
 #include "firmware/stored_state.hpp"
 #include "firmware/workcell.hpp"
@@ -140,6 +141,7 @@ struct Board {
   std::optional<int> input_result;
   Ports ports;
   SlowMemory memory;
+  SpindleEncoder encoder;
   /// The control inputs and limits that acted last, for `$LEV`.
   std::string last_control;
   AxisMask last_limits = 0;
@@ -220,6 +222,11 @@ struct Board {
   [[nodiscard]] Dwell delay_step(int delay_setting) const;
   /// Spindle speed with override and limits; 0 when off.
   [[nodiscard]] float spindle_rpm() const;
+
+  /// Speeds, overrides or the spindle's load may have changed: the encoder and what follows it take notice.
+  void follow_spindle();
+  /// The encoder measures the speed that is asked for, as closely as `$340` wants it.
+  [[nodiscard]] bool is_spindle_at_speed() const;
 
   /// Parser and planner continue from where the machine stands.
   void sync_position();

@@ -40,8 +40,11 @@ Duration restore_delay(const Board& board, double seconds) {
 void Cycle::auto_start(int more_passes) {
   const bool changes_tool = board_.state == MachineState::Tool && board_.changes_tool;
   if (!(board_.state == MachineState::Idle || changes_tool) || board_.planner.is_empty()) return;
+  const auto wait = wait_for_index();
+  if (!wait) return miss_spindle();
+  if (*wait > Duration::zero()) board_.locked_until = board_.now + *wait;
   board_.owes_status = board_.owes_status || changes_tool;
-  run_or_idle(board_.until_pass(board_.personality.loop.to_start + more_passes));
+  run_or_idle(*wait + board_.until_pass(board_.personality.loop.to_start + more_passes));
 }
 
 void Cycle::run_or_idle_after(int passes) {
@@ -142,7 +145,11 @@ void Cycle::feed_hold() {
       if (board_.overrides.feed_hold_acts) pause();
       break;
     case MachineState::Run:
-      if (board_.overrides.feed_hold_acts) halt(Halt::Hold);
+      if (cuts_thread()) {
+        holds_after_thread_ = true;
+      } else if (board_.overrides.feed_hold_acts) {
+        halt(Halt::Hold);
+      }
       break;
     case MachineState::Jog:
       if (board_.personality.dialect().feed_hold_cancels_jog) jog_cancel();
@@ -209,6 +216,7 @@ void Cycle::come_to_rest() {
 void Cycle::end_motion() {
   moving_ = false;
   board_.state = resting_state();
+  if (std::exchange(holds_after_thread_, false)) pause();
 }
 
 void Cycle::stop() {
@@ -323,8 +331,9 @@ Accessories Cycle::what_stays_on() const {
 }
 
 void Cycle::switch_off() {
+  // Told even if everything was off already: all firmwares switch it off again (gnea/grbl protocol.c).
   board_.set_accessories(what_stays_on());
-  if (board_.personality.has_extended_settings) board_.owe_accessories();
+  board_.owe_accessories();
 }
 
 void Cycle::rest_parked() {
@@ -412,6 +421,8 @@ bool Cycle::kill() {
   moving_ = false;
   motion_ended_ = false;
   contacts_.clear();
+  holds_after_thread_ = false;
+  spindle_missed_at_ = kNever;
   board_.hold_complete = false;
   if (board_.motion_log && was_moving) board_.motion_log->ended(board_.now, board_.steps());
   board_.executor.reset(board_.now);
@@ -439,6 +450,10 @@ void Cycle::advance() {
   board_.executor.advance_to(board_.now);
   for (const motion::ExecutorEvent& event : board_.executor.take_events()) handle(event);
   if (restored_at_ <= board_.now) restore_next();
+  if (spindle_missed_at_ <= board_.now) {
+    spindle_missed_at_ = kNever;
+    board_.raise_alarm(vocabulary::AlarmCode::SpindleAtSpeedTimeout);
+  }
 }
 
 void Cycle::handle(const motion::ExecutorEvent& event) {
@@ -481,7 +496,7 @@ void Cycle::handle(const motion::ExecutorEvent& event) {
 }
 
 Instant Cycle::next_deadline() const {
-  return std::min(board_.executor.next_deadline(), restored_at_);
+  return std::min({board_.executor.next_deadline(), restored_at_, spindle_missed_at_});
 }
 
 }  // namespace kerf::firmware

@@ -75,6 +75,12 @@ class Cycle {
     return board_.changes_tool ? MachineState::Tool : MachineState::Idle;
   }
   void resume();
+  /// How long the motion at the front of the queue waits for the spindle; none if it waits in vain.
+  [[nodiscard]] std::optional<Duration> wait_for_index() const;
+  /// No index came, or the spindle stands.
+  void miss_spindle();
+  /// The motion may not be held before it ends.
+  [[nodiscard]] bool cuts_thread() const;
   void run_or_idle(Duration after = Duration::zero());
   void finish_stop();
   void finish_retract();
@@ -95,6 +101,8 @@ class Cycle {
   Accessories to_restore_;
   bool motion_ended_ = false;
   bool moving_ = false;
+  bool holds_after_thread_ = false;
+  Instant spindle_missed_at_ = kNever;
   std::vector<motion::ThresholdCrossed> contacts_;
 };
 

@@ -75,6 +75,11 @@ class Foreground {
   bool operator()(Probe& step);
   bool operator()(HomeAxes& step);
   bool operator()(WaitForInput& step);
+  bool operator()(WaitForSpindle& step);
+  bool operator()(BeginThread& step);
+  bool operator()(EndThread& step);
+  /// The line ends here, with an error.
+  void give_up_line(ErrorCode code);
   bool operator()(RaiseAlarm& step);
   bool operator()(StopAtSoftLimit& step);
   bool operator()(EnterCritical& step);
@@ -145,6 +150,7 @@ class Foreground {
   std::optional<Instant> until_;
   bool in_line_ = false;
   bool is_frozen_ = false;
+  std::optional<OverrideState> overrides_before_thread_;
   /// The line that waits for room has been told to the backlash, and what is to be taken up before it.
   bool turn_noted_ = false;
   std::optional<AxisValues> take_up_mm_;

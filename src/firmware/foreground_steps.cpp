@@ -111,17 +111,7 @@ bool Foreground::operator()(PlanArc& step) {
   if (!step.chords) {
     if (board_.personality.checks_whole_arcs && !check_travel(move.target_mm)) return true;
     if (board_.state == MachineState::Check && !board_.personality.soft_limits_in_check) return true;
-    const gcode::PlaneAxes axes = gcode::axes_of(move.plane);
-    const motion::Arc arc = {
-        .start_mm = step.start_mm,
-        .target_mm = move.target_mm,
-        .center_offset_mm = move.center_offset_mm,
-        .radius_mm = move.radius_mm,
-        .plane_axes = {static_cast<std::uint8_t>(axes.first), static_cast<std::uint8_t>(axes.second),
-                       static_cast<std::uint8_t>(axes.linear)},
-        .clockwise = move.clockwise,
-        .turns = move.turns};
-    step.chords.emplace(arc, board_.planner.rules(), board_.planner.settings());
+    step.chords.emplace(motion::arc_of(move, step.start_mm), board_.planner.rules(), board_.planner.settings());
   }
   gcode::Feed feed = move.feed;
   if (feed.inverse_time && step.chords->inverse_time_factor() > 1) {
@@ -237,7 +227,12 @@ bool Foreground::operator()(Perform& step) {
     after.emplace_back(Say{.message = protocol::Feedback{.text = std::string{vocabulary::feedback_text(
                                                              board_.personality.firmware, FeedbackText::ProgramEnd)}}});
   }
-  if (!checks_only) board_.set_accessories(wanted);
+  if (!checks_only && coolant != nullptr && board_.personality.status.coolant_on_is_untold) {
+    board_.accessories = wanted;
+    if (!wanted.flood && !wanted.mist) board_.owe_accessories();
+  } else if (!checks_only) {
+    board_.set_accessories(wanted);
+  }
   insert_front(std::move(after));
   return true;
 }

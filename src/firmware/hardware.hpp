@@ -16,12 +16,14 @@ struct Hardware {
   gcode::PortCounts ports{};
   /// Writing to memory takes as long as on the real board.
   bool slow_memory = false;
+  /// The spindle has an encoder: G33, G76, G95, speeds that are waited for (grblHAL).
+  bool spindle_encoder = false;
 
   bool operator==(const Hardware&) const = default;
 };
 
 /// Which part of some hardware a firmware has no use for, or not so much.
-enum class HardwareFault : std::uint8_t { Axes, Tools, Ports, SlowMemory };
+enum class HardwareFault : std::uint8_t { Axes, Tools, Ports, SlowMemory, SpindleEncoder };
 
 /// The least number of axes that any firmware is built with.
 inline constexpr int kFewestAxes = 3;

@@ -246,6 +246,7 @@ std::vector<std::string> Listing::new_options() const {
   if (settings.is_lathe()) flags.emplace_back("LATHE");
   if (board_.personality.dialect().builds.contains(vocabulary::BuildOption::Expressions)) flags.emplace_back("EXPR");
   if (settings.number(setting::kToolChangeMode) != 4.0) flags.emplace_back("TC");
+  if (settings.has_spindle_encoder()) flags.emplace_back("SS");
   flags.emplace_back("SED");
   if (board_.slot.exists()) flags.insert(flags.end(), {"SD", "YM"});
   return flags;
@@ -305,10 +306,11 @@ void Listing::spindles(bool for_machines) {
     line("0 - simulated PWM spindle");
     return;
   }
-  board_.say(protocol::BuildRow{.key = "SPINDLE",
-                                .value = "0|0|0|*DRV|simulated PWM spindle|" +
-                                         base::to_fixed(board_.settings.number(setting::kSpindleMin), 1) + "," +
-                                         base::to_fixed(board_.settings.number(setting::kSpindleMax), 1)});
+  board_.say(protocol::BuildRow{
+      .key = "SPINDLE",
+      .value = std::string{"0|0|0|"} + (board_.settings.has_spindle_encoder() ? "*SDRVE" : "*DRV") +
+               "|simulated PWM spindle|" + base::to_fixed(board_.settings.number(setting::kSpindleMin), 1) + "," +
+               base::to_fixed(board_.settings.number(setting::kSpindleMax), 1)});
 }
 
 }  // namespace kerf::firmware

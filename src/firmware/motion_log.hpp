@@ -1,6 +1,8 @@
 #pragma once
 // What a controller planned and what its steppers did, block by block, for those who ask for it.
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -26,13 +28,21 @@ struct ExecutedStretch {
   vocabulary::AxisSteps end_steps{};
 };
 
-/// Grows without bound while a controller keeps it.
+/// Grows without bound while a controller keeps it, unless it only counts.
 class MotionLog {
  public:
+  enum class Keeps : std::uint8_t { Blocks, Counts };
+
+  explicit MotionLog(Keeps keeps = Keeps::Blocks) : keeps_(keeps) {}
+
   void planned(std::uint32_t line, const motion::PlannedBlock& block) {
+    ++planned_;
+    if (keeps_ == Keeps::Counts) return;
     moves_.push_back({.line = line, .length_mm = block.length_mm, .rate_mm_per_min = block.programmed_rate});
   }
   void began(Instant at) {
+    ++executed_;
+    if (keeps_ == Keeps::Counts) return;
     stretches_.push_back({.began = at, .ended = at});
     is_open_ = true;
   }
@@ -45,12 +55,18 @@ class MotionLog {
     stretches_.back().end_steps = steps;
   }
 
+  /// Blocks that were planned and have begun.
+  [[nodiscard]] std::size_t blocks() const { return std::min(planned_, executed_); }
+  /// Empty if only counts are kept, as are the stretches.
   [[nodiscard]] const std::vector<PlannedMove>& moves() const { return moves_; }
   [[nodiscard]] const std::vector<ExecutedStretch>& stretches() const { return stretches_; }
   /// When the steppers came to rest, or finished a block, for the last time.
   [[nodiscard]] Instant last_end() const { return last_end_; }
 
  private:
+  Keeps keeps_;
+  std::size_t planned_ = 0;
+  std::size_t executed_ = 0;
   std::vector<PlannedMove> moves_;
   std::vector<ExecutedStretch> stretches_;
   Instant last_end_{};

@@ -43,6 +43,7 @@ std::optional<HardwareFault> fault_in(const Hardware& wanted, const Personality&
   if (wanted.tools > most.tools) return HardwareFault::Tools;
   if (!fit(wanted.ports, most.ports)) return HardwareFault::Ports;
   if (wanted.slow_memory && !most.slow_memory) return HardwareFault::SlowMemory;
+  if (wanted.spindle_encoder && !most.spindle_encoder) return HardwareFault::SpindleEncoder;
   return std::nullopt;
 }
 
@@ -53,6 +54,7 @@ Personality built_with(const Personality& personality, const Hardware& hardware)
   if (hardware.tools != 0) built.hardware.tools = std::min(hardware.tools, most.tools);
   if (fit(hardware.ports, most.ports) && hardware.ports != gcode::PortCounts{}) built.hardware.ports = hardware.ports;
   built.hardware.slow_memory = hardware.slow_memory && most.slow_memory;
+  built.hardware.spindle_encoder = hardware.spindle_encoder && most.spindle_encoder;
   return built;
 }
 

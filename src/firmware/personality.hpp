@@ -199,9 +199,10 @@ struct ObsoleteSetting {
 struct StatusRules {
   bool at_once = false;  ///< Rabbit answers from its receive task, whatever the main loop does
   bool when_critical = false;
-  bool first_is_overrides = false;  ///< grblHAL: `Ov` is due before `WCO`; Grbl the other way round
-  bool counts_changes = false;      ///< grblHAL: fields come when something changed
-  bool accessories_alone = false;   ///< `A:` also without `Ov:`, and empty when all is off
+  bool first_is_overrides = false;    ///< grblHAL: `Ov` is due before `WCO`; Grbl the other way round
+  bool counts_changes = false;        ///< grblHAL: fields come when something changed
+  bool coolant_on_is_untold = false;  ///< Rabbit: M7 and M8 make no report due, M9 always does
+  bool accessories_alone = false;     ///< `A:` also without `Ov:`, and empty when all is off
 };
 
 /// What realtime bytes do.

@@ -168,6 +168,7 @@ void Reporter::add_speed(StatusReport& report) const {
   const double scale = board_.settings.flag(setting::kReportInches) ? 1.0 / kMmPerInch : 1.0;
   report.feed_mm_per_min = static_cast<double>(board_.executor.speed_mm_per_min()) * scale;
   report.spindle_rpm = static_cast<double>(std::round(board_.spindle_rpm()));
+  if (board_.settings.has_spindle_encoder()) report.measured_rpm = std::round(board_.encoder.rpm());
 }
 
 std::string Reporter::pins() const {

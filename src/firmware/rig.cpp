@@ -28,6 +28,8 @@ std::string_view missing_part(const Deed& deed, const VirtualController& control
     if (port->digital) return port->port < hardware.ports.digital_inputs ? "" : "such user input";
     return port->port < hardware.ports.analog_inputs ? "" : "such analog input";
   }
+  const bool is_encoder = event != nullptr && std::holds_alternative<EncoderPlugged>(*event);
+  if (is_encoder && !hardware.spindle_encoder) return "spindle encoder";
   const bool is_pendant = std::holds_alternative<PendantTakes>(deed) || std::holds_alternative<PendantSays>(deed);
   return is_pendant && !controller.equipment().pendant ? "pendant" : "";
 }

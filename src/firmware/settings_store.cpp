@@ -20,9 +20,32 @@ bool is_text(SettingType type) {
 constexpr unsigned kFirstRotary = 3;
 constexpr unsigned kParkingOverrideBit = 2;
 
+/// What a build whose driver has a spindle encoder adds, and how it begins (grblHAL/core config.h; the pulses are those
+/// of our driver).
+constexpr std::array<std::pair<int, std::string_view>, 6> kEncoderSettings{
+    {{setting::kEncoderPulses, "400"},
+     {90, "1.000"},
+     {91, "0.010"},
+     {92, "0.000"},
+     {95, "10.000"},
+     {setting::kSpindleAtSpeedTolerance, "0.0"}}};
+
+const auto* encoder_setting(const SettingRow& row) {
+  return std::ranges::find(kEncoderSettings, row.id, [](const auto& pair) { return pair.first; });
+}
+
+bool is_fitted(const SettingRow& row, const Personality& personality, int axes) {
+  if (vocabulary::is_built(row, personality.dialect().builds, axes)) return true;
+  return personality.hardware.spindle_encoder && encoder_setting(row) != kEncoderSettings.end();
+}
+
 /// A mask over all axes is written down for three of them (vocabulary::SettingRow), one over rotary axes for all.
 std::string default_text(const SettingMatch& match, int axes) {
   const SettingRow& row = *match.row;
+  const bool is_optional = row.default_value.empty() && row.build == vocabulary::BuildOption::Driver;
+  if (const auto* encoder = encoder_setting(row); is_optional && encoder != kEncoderSettings.end()) {
+    return std::string{encoder->second};
+  }
   if (row.id == setting::kRotaryAxes) {
     const auto mask = static_cast<unsigned>(base::parse_int(row.default_value).value_or(0));
     return std::to_string(mask & ((1U << (static_cast<unsigned>(axes) - kFirstRotary)) - 1U));
@@ -52,7 +75,7 @@ SettingsStore::SettingsStore(const Personality& personality, int axes)
     : personality_(personality), rows_(personality.dialect().settings), axes_(axes) {
   for (const SettingRow& row : rows_) {
     first_slot_.push_back(slots_.size());
-    if (!vocabulary::is_built(row, personality.dialect().builds, axes_)) continue;
+    if (!is_fitted(row, personality, axes_)) continue;
     const int count = row.per_axis ? axes_with_settings() : 1;
     for (int axis = 0; axis < count; ++axis) {
       slots_.push_back({.match = {.row = &row, .axis = axis}, .format = vocabulary::format_of(row, axes_)});
@@ -136,7 +159,7 @@ void SettingsStore::apply_consequences() {
 }
 
 const SettingsStore::Slot* SettingsStore::slot_of(const SettingMatch& match) const {
-  if (!vocabulary::is_built(*match.row, personality_.dialect().builds, axes_)) return nullptr;
+  if (!is_fitted(*match.row, personality_, axes_)) return nullptr;
   return &slots_.at(first_slot_.at(static_cast<std::size_t>(match.row - rows_.data())) +
                     static_cast<std::size_t>(match.axis));
 }
@@ -208,6 +231,10 @@ motion::MotionSettings SettingsStore::motion() const {
   };
 }
 
+bool SettingsStore::has_spindle_encoder() const {
+  return personality_.hardware.spindle_encoder && number(setting::kEncoderPulses) > 0;
+}
+
 void SettingsStore::configure(gcode::InterpreterSettings& settings) const {
   settings.axes = axes_;
   settings.laser_mode = is_laser();
@@ -224,6 +251,8 @@ void SettingsStore::configure(gcode::InterpreterSettings& settings) const {
   settings.parking_override_control = flag(setting::kParking) && flag(setting::kParking, kParkingOverrideBit);
   settings.tools = personality_.hardware.tools;
   settings.ports = personality_.hardware.ports;
+  settings.spindle_encoder = has_spindle_encoder();
+  settings.spindle_rpm_min = static_cast<float>(number(setting::kSpindleMin));
   settings.g73_retract_mm = static_cast<float>(number(setting::kG73Retract));
 }
 

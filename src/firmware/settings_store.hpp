@@ -64,6 +64,8 @@ class SettingsStore {
   [[nodiscard]] motion::MotionSettings motion() const;
   /// Updates the settings that the interpreter depends on; the rest of `settings` stays.
   void configure(gcode::InterpreterSettings& settings) const;
+  /// Built with an encoder, and `$38` gives it pulses.
+  [[nodiscard]] bool has_spindle_encoder() const;
 
  private:
   [[nodiscard]] int axes_with_settings() const;
@@ -134,6 +136,8 @@ inline constexpr int kToolProbePullOff = 345;
 inline constexpr int kToolChangeOptions = 346;
 inline constexpr int kRotaryAxes = 376;
 inline constexpr int kG92Volatile = 384;
+inline constexpr int kEncoderPulses = 38;  // grblHAL
+inline constexpr int kSpindleAtSpeedTolerance = 340;
 inline constexpr int kSpindleOnDelay = 394;
 inline constexpr int kPlannerBlocks = 398;
 inline constexpr int kAutoReport = 481;

@@ -123,6 +123,18 @@ struct WaitForInput {
   std::optional<Instant> until{};
   float before = 0;
 };
+/// Waits until the encoder says that the spindle is at speed; after `limit` without that: ALARM:14 (grblHAL).
+struct WaitForSpindle {
+  Duration limit{};
+  Duration waited{};
+  std::optional<Instant> until{};
+};
+/// G33, G76: the spindle must turn, and overrides rest until the thread is cut.
+struct BeginThread {
+  float pitch_mm = 0;
+  vocabulary::AxisValues start_mm{};
+};
+struct EndThread {};
 /// M6, the motion before it has ended.
 struct BeginToolChange {};
 struct ContinueToolChange {
@@ -135,11 +147,11 @@ struct FinishHoming {
   vocabulary::AxisMask asked = 0;  ///< 0: all
 };
 
-using Step =
-    std::variant<Answer, Say, SayStatus, SayProbe, PlanMove, PlanArc, PlanJog, Synchronize, Dwell, Freeze, Perform,
-                 HoldForCycleStart, Probe, HomeAxes, WaitForInput, RaiseAlarm, StopAtSoftLimit, EnterCritical, Restart,
-                 CheckAtStart, RunStartupLines, KeepStartupLine, RunStartupBlock, BeginFileJob, EndFileJob, EnterSleep,
-                 BeginToolChange, EnterToolChange, ContinueToolChange, FinishToolChange, FinishHoming>;
+using Step = std::variant<Answer, Say, SayStatus, SayProbe, PlanMove, PlanArc, PlanJog, Synchronize, Dwell, Freeze,
+                          Perform, HoldForCycleStart, Probe, HomeAxes, WaitForInput, WaitForSpindle, BeginThread,
+                          EndThread, RaiseAlarm, StopAtSoftLimit, EnterCritical, Restart, CheckAtStart, RunStartupLines,
+                          KeepStartupLine, RunStartupBlock, BeginFileJob, EndFileJob, EnterSleep, BeginToolChange,
+                          EnterToolChange, ContinueToolChange, FinishToolChange, FinishHoming>;
 
 /// What the foreground is waiting for, to be looked at.
 enum class WaitingFor : std::uint8_t {

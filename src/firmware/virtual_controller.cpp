@@ -107,6 +107,7 @@ struct VirtualController::Parts {
   void happen(const WorkcellEvent& event) {
     foreground.settle();
     board.workcell.apply(event);
+    board.follow_spindle();
     foreground.look_at_switches();
     if (const auto* change = std::get_if<InputChanged>(&event)) {
       if (change->active) press(change->input);
@@ -308,8 +309,8 @@ std::vector<double> VirtualController::position_mm() const {
   return mm;
 }
 
-void VirtualController::keep_motion_log() {
-  parts_->board.motion_log.emplace();
+void VirtualController::keep_motion_log(MotionLog::Keeps keeps) {
+  parts_->board.motion_log.emplace(keeps);
   parts_->board.lines_read = 0;
 }
 

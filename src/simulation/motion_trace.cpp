@@ -124,7 +124,8 @@ class TraceRun {
     for (const auto& event : machine.workcell) controller_.submit(now_, event);
     if (machine.personality.full_buffer_drops_realtime) kept_free_ = kRoomForRealtime;
     switch_on(controller_, now_, machine.told);
-    controller_.keep_motion_log();
+    using Keeps = firmware::MotionLog::Keeps;
+    controller_.keep_motion_log(run.keeps_blocks ? Keeps::Blocks : Keeps::Counts);
     const std::string sent = as_sent(run.program);
     trace_.lines = static_cast<std::uint32_t>(std::ranges::count(sent, '\n'));
     next_sample_ = run.sample_every ? Instant{} : kNever;
@@ -224,6 +225,7 @@ class TraceRun {
     }
     trace_.final_steps = steps();
     trace_.final_mm = controller_.position_mm();
+    trace_.block_count = log.blocks();
     const std::size_t count = std::min(log.moves().size(), log.stretches().size());
     trace_.blocks.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {

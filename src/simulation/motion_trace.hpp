@@ -1,6 +1,7 @@
 #pragma once
 // A program on the virtual controller, in virtual time: when each block ends, where the machine is, how long it takes.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,6 +26,8 @@ struct ProgramRun {
   /// Counted from the first byte of the program.
   std::vector<InjectedByte> inject{};
   std::optional<Duration> sample_every{};
+  /// False: blocks are only counted; there may be millions.
+  bool keeps_blocks = true;
 };
 
 /// One block, in the order of execution. `line`, `length_mm` and `rate_mm_per_min` are those of the block that was
@@ -56,6 +59,8 @@ struct MotionTrace {
   /// Lines that were answered, of `lines`.
   std::uint32_t lines_answered = 0;
   std::uint32_t lines = 0;
+  std::size_t block_count = 0;
+  /// Empty if they are only counted.
   std::vector<BlockTrace> blocks;
   std::vector<PositionSample> positions;
   std::vector<std::int32_t> final_steps;

@@ -87,6 +87,8 @@ std::expected<void, TalkFault> read_header(Talk& talk, std::string_view text) {
     const auto ports = firmware::parse_port_counts(value);
     if (!ports) return std::unexpected(TalkFault::BadCount);
     talk.hardware.ports = *ports;
+  } else if (parts[0] == "spindle-encoder") {
+    talk.hardware.spindle_encoder = true;
   } else if (parts[0] == "slow-memory") {
     talk.hardware.slow_memory = true;
   } else if (parts[0] == "setting") {
@@ -169,7 +171,8 @@ std::string_view explain(TalkFault fault) {
       return "a line begins with '->', '=>', '<-', '<~', '<!', 'P>', '<P', '@', '%' or '#', then one space";
     case TalkFault::BadCount: return "this header wants whole numbers";
     case TalkFault::UnknownHeader:
-      return "this header is none of personality, axes, tools, ports, slow-memory, setting, power-up, card, file, "
+      return "this header is none of personality, axes, tools, ports, slow-memory, spindle-encoder, setting, power-up, "
+             "card, file, "
              "pendant and virtual-only";
     case TalkFault::HeaderAfterStep: return "headers stand before the first step";
     case TalkFault::UnknownPersonality:

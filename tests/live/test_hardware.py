@@ -2,6 +2,7 @@
 
 import os
 import select
+import socket
 import tempfile
 import unittest
 
@@ -66,6 +67,38 @@ class Hardware(LiveTest):
         with VirtualMachine("grblhal") as machine, Wire(machine.port) as wire:
             self.assertEqual(wire.quiet(), b"")
 
+    def test_two_wires_of_rabbit_write_into_one_line_and_both_hear_everything(self):
+        path = os.path.join(self.folder, "tty")
+        with VirtualMachine("rabbit", pty_path=path) as machine, Wire(machine.port) as wire:
+            terminal = os.open(path, os.O_RDWR | os.O_NOCTTY)
+            self.addCleanup(os.close, terminal)
+            os.write(terminal, b"G2")
+            wire.quiet(0.2)
+            wire.send(b"1\nG9")
+            wire.line("ok")
+            os.write(terminal, b"9\n")
+            wire.line("error:20")
+            told = b""
+            while b"error:20" not in told:
+                self.assertTrue(select.select([terminal], [], [], 10)[0], told)
+                told += os.read(terminal, 4096)
+
+    def test_a_spindle_with_an_encoder(self):
+        control = os.path.join(self.folder, "control")
+        options = ["--spindle-encoder", "--control", f"unix:{control}"]
+        with VirtualMachine("grblhal", *options) as machine, Wire(machine.port) as wire:
+            wire.send(b"$I+\n")
+            self.assertIn(",SS,", wire.line("[NEWOPT:"))
+            wire.send(b"M3S600\nG95F0.5\nG91G1X5\n")
+            with socket.socket(socket.AF_UNIX) as orders:
+                orders.connect(control)
+                lines = orders.makefile("rw")
+                lines.write("spindle slow 0.5\n")
+                lines.flush()
+                self.assertEqual(lines.readline().strip(), "ok")
+            wire.send(b"?")
+            self.assertRegex(wire.line("<"), r"FS:\d+,600,300\|")
+
     def test_what_a_firmware_cannot_have_is_refused(self):
         for personality, options, words in (
                 ("grbl", ["--axes", "4"], ["3 axes", "--axes", "rabbit, grblhal"]),
@@ -77,6 +110,7 @@ class Hardware(LiveTest):
                 ("grbl", ["--ports", "1,1,0,0"], ["--ports", "grblhal"]),
                 ("grblhal", ["--ports", "17,0,0,0"], ["16"]),
                 ("grblhal", ["--ports", "4,4"], ["--ports 4,4,2,2"]),
+                ("rabbit", ["--spindle-encoder"], ["--spindle-encoder", "grblhal"]),
                 ("grblhal", ["--slow-memory"], ["--slow-memory", "grbl"]),
                 ("rabbit", ["--welcome-on-connect"], ["--welcome-on-connect"])):
             with self.subTest(personality=personality, options=options):

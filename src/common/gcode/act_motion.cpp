@@ -20,6 +20,23 @@ void move_arc(const Block& block, BlockContext& context, const Feed& feed) {
                                 .feed = feed});
 }
 
+/// A straight move of a lathe across the face does not look at the spindle (gcode.c); arcs do `always`.
+Feed per_revolution(const Block& block, const BlockContext& context, Feed feed, bool always) {
+  constexpr std::size_t kZ = 2;
+  feed.per_revolution = block.modal.feed_mode == FeedMode::UnitsPerRevolution;
+  feed.synchronized =
+      feed.per_revolution && (always || !context.settings.lathe_mode || block.xyz[kZ] != context.state.position_mm[kZ]);
+  return feed;
+}
+
+/// G33: one turn of the spindle for each pitch.
+void move_synchronized(const Block& block, BlockContext& context, Feed feed) {
+  feed.rate_mm_per_min = block.k_pitch;
+  feed.inverse_time = false;
+  feed.no_override = feed.synchronized = true;
+  move_line(block, context, feed, false);
+}
+
 void probe(const Block& block, BlockContext& context, Feed feed) {
   const MotionMode motion = block.modal.motion;
   feed.no_override = true;
@@ -51,9 +68,11 @@ void move(Block& block, BlockContext& context) {
   const Feed feed = feed_of(block, context);
   switch (block.modal.motion) {
     case MotionMode::Rapid: move_line(block, context, feed, true); break;
-    case MotionMode::Linear: move_line(block, context, feed, false); break;
+    case MotionMode::Linear: move_line(block, context, per_revolution(block, context, feed, false), false); break;
     case MotionMode::ClockwiseArc:
-    case MotionMode::CounterclockwiseArc: move_arc(block, context, feed); break;
+    case MotionMode::CounterclockwiseArc: move_arc(block, context, per_revolution(block, context, feed, true)); break;
+    case MotionMode::SpindleSynchronized: move_synchronized(block, context, feed); break;
+    case MotionMode::Thread: act_thread(context, feed); break;
     case MotionMode::ProbeToward:
     case MotionMode::ProbeTowardNoError:
     case MotionMode::ProbeAway:

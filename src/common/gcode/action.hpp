@@ -41,6 +41,9 @@ struct Feed {
   float rate_mm_per_min = 0.0F;
   bool inverse_time = false;
   bool per_revolution = false;
+  /// The motion begins only while the spindle turns; without per_revolution it begins at the index of its encoder, and
+  /// the rate is the pitch of a thread in mm.
+  bool synchronized = false;
   /// Feed override does not act (jogs, probing).
   bool no_override = false;
   /// Programmed speed; 0 on motions that must not burn in laser mode.

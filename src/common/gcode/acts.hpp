@@ -41,8 +41,9 @@ ErrorCode act_motion(Block& block, BlockContext& context);
 /// How the block's motions run.
 [[nodiscard]] Feed feed_of(const Block& block, const BlockContext& context);
 
-// act_cycle.cpp and act_spline.cpp: motions that become several lines.
+// act_cycle.cpp, act_spline.cpp and act_thread.cpp: motions that become several lines.
 void act_canned_cycle(Block& block, BlockContext& context, Feed feed);
+void act_thread(BlockContext& context, Feed feed);
 void act_cubic_spline(const Block& block, BlockContext& context, const Feed& feed,
                       const std::array<float, 2>& first_control, const std::array<float, 2>& second_control);
 

@@ -227,6 +227,18 @@ ErrorCode check_motion(Block& block, BlockContext& context) {
   }
 }
 
+namespace {
+
+ErrorCode check_synchronized(Block& block, BlockContext& context) {
+  if (block.modal.motion == MotionMode::Thread) return check_thread(block, context);
+  if (block.k_pitch == 0.0F) return ErrorCode::ValueOutOfRange;
+  block.spindle_force_sync = true;
+  // grblHAL/core has no rigid tapping of its own.
+  return block.modal.motion == MotionMode::RigidTap ? ErrorCode::UnsupportedCommand : ErrorCode::Ok;
+}
+
+}  // namespace
+
 ErrorCode check_motion_grblhal(Block& block, BlockContext& context) {
   const MotionMode motion = block.modal.motion;
   if (motion == MotionMode::None) {
@@ -241,7 +253,8 @@ ErrorCode check_motion_grblhal(Block& block, BlockContext& context) {
     return ErrorCode::SpindleNotRunning;
   const bool needs_encoder =
       motion == MotionMode::SpindleSynchronized || motion == MotionMode::RigidTap || motion == MotionMode::Thread;
-  if (needs_encoder) return ErrorCode::UnsupportedCommand;
+  if (needs_encoder && !context.settings.spindle_encoder) return ErrorCode::UnsupportedCommand;
+  if (needs_encoder) return check_synchronized(block, context);
   if (block.f == 0.0F) return ErrorCode::UndefinedFeedRate;
   if (block.modal.canned_cycle) {
     if (const ErrorCode error = check_canned_cycle(block, context); error != ErrorCode::Ok) return error;

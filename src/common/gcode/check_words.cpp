@@ -141,7 +141,7 @@ ErrorCode check_spindle_speed(Block& block, BlockContext& context) {
   return ErrorCode::Ok;
 }
 
-// One spindle without encoder: `$` may only be 0, G95 and spindle-synchronised motion do not exist.
+// One spindle: `$` may only be 0; without an encoder G95 and spindle-synchronised motion do not exist.
 ErrorCode check_spindle_grblhal(Block& block, BlockContext& context) {
   if (block.modal.motion == MotionMode::SpindleSynchronized || block.modal.motion == MotionMode::RigidTap) {
     block.k_pitch = 0.0F;
@@ -165,7 +165,8 @@ ErrorCode check_spindle_grblhal(Block& block, BlockContext& context) {
       block.words.take('$');
     }
   }
-  if (block.modal.feed_mode == FeedMode::UnitsPerRevolution) return ErrorCode::UnsupportedCommand;
+  if (block.modal.feed_mode == FeedMode::UnitsPerRevolution && !context.settings.spindle_encoder)
+    return ErrorCode::UnsupportedCommand;
   if (const ErrorCode error = check_surface_speed_mode(block, context); error != ErrorCode::Ok) return error;
   if (block.words.has('S') && block.s < 0.0F) return ErrorCode::NegativeValue;
   if (context.state.modal.surface_speed) {

@@ -29,6 +29,9 @@ ErrorCode check_pins(Block& block, BlockContext& context);
 ErrorCode check_unused_words(Block& block, BlockContext& context);
 ErrorCode check_jog_words(Block& block, BlockContext& context);
 
+// check_thread.cpp: motions that follow the spindle, where it has an encoder.
+ErrorCode check_thread(Block& block, BlockContext& context);
+
 // check_axes.cpp: units, scaling, offsets, targets.
 ErrorCode convert_units(Block& block, BlockContext& context);
 ErrorCode check_scaling(Block& block, BlockContext& context);

@@ -48,6 +48,10 @@ struct InterpreterSettings {
   bool parking_override_control = false;
   /// Without any M62 to M68 do not exist.
   PortCounts ports{};
+  /// The spindle has an encoder: G33, G76 and G95 exist.
+  bool spindle_encoder = false;
+  /// grblHAL `$31`, what G76 wants at least.
+  float spindle_rpm_min = 0.0F;
   /// grblHAL `$28`.
   float g73_retract_mm = 0.1F;
   /// `$13`: grblHAL's parameters tell positions in other units then.

@@ -82,6 +82,24 @@ struct CannedCycle {
   bool operator==(const CannedCycle&) const = default;
 };
 
+/// What G76 remembers while later blocks repeat it. Lengths in mm, X in radius.
+struct ThreadCycle {
+  float pitch_mm = 0.0F;
+  float end_z_mm = 0.0F;
+  float direction = 1.0F;  ///< of the cut along X
+  float peak_mm = 0.0F;
+  float first_depth_mm = 0.0F;
+  float depth_mm = 0.0F;
+  float degression = 1.0F;
+  float infeed_angle_deg = 0.0F;
+  float taper_height_mm = 0.0F;
+  float end_taper_mm = 0.0F;
+  bool tapers_entry = false;
+  bool tapers_exit = false;
+  int spring_passes = 0;
+  bool operator==(const ThreadCycle&) const = default;
+};
+
 /// The part of the state that a block's words may change before it is known to be valid.
 struct ModalState {
   MotionMode motion = MotionMode::Rapid;
@@ -155,6 +173,7 @@ struct ParserState {
   /// G51 (grblHAL).
   AxisValues scale_factor{1, 1, 1, 1, 1, 1, 1, 1};
   CannedCycle canned;
+  ThreadCycle thread;
   std::optional<SavedModalState> saved;
   /// G66 is in force: motions call this macro.
   std::optional<MacroRequest> modal_macro;

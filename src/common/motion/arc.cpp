@@ -20,6 +20,18 @@ constexpr Wide kTwoPi = static_cast<Wide>(2) * std::numbers::pi_v<Wide>;
 
 }  // namespace
 
+Arc arc_of(const gcode::ArcMove& move, const AxisValues& start_mm) {
+  const gcode::PlaneAxes axes = gcode::axes_of(move.plane);
+  return {.start_mm = start_mm,
+          .target_mm = move.target_mm,
+          .center_offset_mm = move.center_offset_mm,
+          .radius_mm = move.radius_mm,
+          .plane_axes = {static_cast<std::uint8_t>(axes.first), static_cast<std::uint8_t>(axes.second),
+                         static_cast<std::uint8_t>(axes.linear)},
+          .clockwise = move.clockwise,
+          .turns = move.turns};
+}
+
 ArcChords::ArcChords(const Arc& arc, const MotionRules& rules, const MotionSettings& settings)
     : arc_(arc),
       rules_(rules),

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/gcode/action.hpp"
 #include "common/motion/rules.hpp"
 
 namespace kerf::motion {
@@ -22,6 +23,9 @@ struct Arc {
   /// Full turns in all (grblHAL's P); 1 is a plain arc.
   int turns = 1;
 };
+
+/// The arc that a move asks for which begins at `start_mm`.
+[[nodiscard]] Arc arc_of(const gcode::ArcMove& move, const AxisValues& start_mm);
 
 /// Hands out the ends of an arc's chords one at a time, so that the caller can stop whenever the planner is full
 /// (gnea/grbl motion_control.c mc_arc; motion.md 1.4).

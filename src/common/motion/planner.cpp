@@ -155,6 +155,7 @@ float Planner::junction_speed_sqr(const AxisValues& direction) const {
 
 float Planner::nominal_speed(const PlannedBlock& block) const {
   float rate = block.programmed_rate;
+  if (block.feed.per_revolution || block.feed.synchronized) rate *= spindle_rpm_;
   if (block.feed.rapid) {
     rate = scaled_by_percent(rules_.float_rule, rate, rapid_percent_);
   } else {
@@ -229,6 +230,19 @@ void Planner::set_overrides(int feed_percent, int rapid_percent) {
   if (feed_percent == feed_percent_ && rapid_percent == rapid_percent_) return;
   feed_percent_ = feed_percent;
   rapid_percent_ = rapid_percent;
+  limit_all_entries();
+}
+
+void Planner::set_spindle_rpm(float rpm) {
+  if (rpm == spindle_rpm_) return;
+  spindle_rpm_ = rpm;
+  for (int index = tail_; index != head_; index = after(index)) {
+    const gcode::Feed& feed = ring_[slot(index)].feed;
+    if (feed.per_revolution || feed.synchronized) return limit_all_entries();
+  }
+}
+
+void Planner::limit_all_entries() {
   if (rules_.replan_needs_blocks && is_empty()) return;
   float previous = kLargeValue;
   for (int index = tail_; index != head_; index = after(index)) {

@@ -68,6 +68,8 @@ class Planner {
 
   /// Percent, already limited to the firmware's range; all queued blocks are planned anew.
   void set_overrides(int feed_percent, int rapid_percent);
+  /// What the encoder of the spindle measures; motions that follow it are planned anew.
+  void set_spindle_rpm(float rpm);
   void set_feed_override(int percent) { set_overrides(percent, rapid_percent_); }
   void set_rapid_override(int percent) { set_overrides(feed_percent_, percent); }
   [[nodiscard]] int feed_override() const { return feed_percent_; }
@@ -117,6 +119,7 @@ class Planner {
   void reverse_pass();
   void forward_pass();
   void replan_all();
+  void limit_all_entries();
 
   // For the segment preparer.
   [[nodiscard]] PlannedBlock& front() { return ring_[slot(tail_)]; }
@@ -136,6 +139,7 @@ class Planner {
   int planned_ = 0;
   int feed_percent_ = 100;
   int rapid_percent_ = 100;
+  float spindle_rpm_ = 0;
   AxisSteps position_{};
   AxisValues previous_direction_{};
   float previous_nominal_ = 0;

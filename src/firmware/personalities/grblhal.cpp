@@ -102,7 +102,8 @@ constexpr Personality kUsual = {
     .speaks = &vocabulary::dialects::kGrblHal,
     .firmware = vocabulary::Firmware::GrblHal,
     .most = {.tools = 32,  // grblHAL/core config.h N_TOOLS
-             .ports = {.digital_inputs = 16, .digital_outputs = 16, .analog_inputs = 16, .analog_outputs = 16}},
+             .ports = {.digital_inputs = 16, .digital_outputs = 16, .analog_inputs = 16, .analog_outputs = 16},
+             .spindle_encoder = true},
     .start = {.blank_memory_error = true,
               .has_homing_alarm = true,
               .same_alarm_is_silent = true,

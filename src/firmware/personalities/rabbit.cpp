@@ -138,7 +138,7 @@ const Personality kRabbit = {
                .travel = TravelRule::MirroredByDirection,
                .switch_sees_pulses = true,
                .no_cycle_error = ErrorCode::HomingNotDefined},
-    .status = {.at_once = true, .when_critical = true},
+    .status = {.at_once = true, .when_critical = true, .coolant_on_is_untold = true},
     .realtime = {.reads_while_slowing = true,
                  .toggles_coolant_in_jog = true,
                  .door_spindle_setting = 37,
