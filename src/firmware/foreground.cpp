@@ -68,9 +68,10 @@ void Foreground::watch_for_sleep() {
   const bool rests = board_.state == MachineState::Idle ||
                      (board_.state == MachineState::Hold && board_.hold_complete) ||
                      (board_.state == MachineState::Door && board_.door == DoorPhase::Ajar);
-  const bool may_sleep =
-      board_.personality.sleep_needs_setting && board_.settings.flag(setting::kSleepEnable) && !board_.auto_reporting;
-  if (!may_sleep || !powered || !rests) {
+  // Asked last, because looking up a setting takes longer than everything else here.
+  const bool may_sleep = powered && rests && board_.personality.sleep_needs_setting && !board_.auto_reporting &&
+                         board_.settings.flag(setting::kSleepEnable);
+  if (!may_sleep) {
     asleep_at_ = kNever;
   } else if (asleep_at_ == kNever) {
     asleep_at_ = board_.now + kUntilSleep;

@@ -128,6 +128,7 @@ struct VirtualController::Parts {
 
   /// What waited for the main loop.
   void catch_up() {
+    if (late_bytes.empty() && late_pendant_bytes.empty() && late_events.empty()) return;
     for (const char byte : std::exchange(late_bytes, {})) act(static_cast<std::uint8_t>(byte));
     for (const char byte : std::exchange(late_pendant_bytes, {})) take_from_pendant(static_cast<std::uint8_t>(byte));
     for (const WorkcellEvent& event : std::exchange(late_events, {})) happen(event);
