@@ -127,18 +127,6 @@ void Cycle::finish_resume(bool was_stopped) {
   run_or_idle_after(passes != 0 && was_stopped ? passes + 1 : passes);
 }
 
-void Cycle::toggle_spindle_stop() {
-  if (board_.state != MachineState::Hold || !board_.hold_complete || !is_spinning(to_restore_)) return;
-  Accessories wanted = board_.accessories;
-  if (is_spinning(wanted)) {
-    wanted.spindle = gcode::SpindleDirection::Off;
-  } else {
-    board_.say(FeedbackText::RestoringSpindle);
-    wanted.spindle = to_restore_.spindle;
-  }
-  board_.set_accessories(wanted);
-}
-
 void Cycle::feed_hold() {
   switch (board_.state) {
     case MachineState::Idle:

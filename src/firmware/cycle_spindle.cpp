@@ -1,4 +1,4 @@
-// Motion that begins with the spindle (grblHAL with an encoder).
+// What the spindle has to do with motion: it is stopped in a hold, and motion begins with it (grblHAL with an encoder).
 
 #include "firmware/cycle.hpp"
 
@@ -32,6 +32,19 @@ void Cycle::miss_spindle() {
 bool Cycle::cuts_thread() const {
   const auto* block = board_.planner.current();
   return block != nullptr && block->feed.synchronized && !block->feed.per_revolution;
+}
+
+void Cycle::toggle_spindle_stop() {
+  using gcode::SpindleDirection::Off;
+  if (board_.state != MachineState::Hold || !board_.hold_complete || to_restore_.spindle == Off) return;
+  Accessories wanted = board_.accessories;
+  if (wanted.spindle != Off) {
+    wanted.spindle = Off;
+  } else {
+    board_.say(vocabulary::FeedbackText::RestoringSpindle);
+    wanted.spindle = to_restore_.spindle;
+  }
+  board_.set_accessories(wanted);
 }
 
 }  // namespace kerf::firmware
