@@ -46,6 +46,7 @@ struct Accessories {
   bool mist = false;
 
   bool operator==(const Accessories&) const = default;
+  [[nodiscard]] bool is_spinning() const { return spindle != gcode::SpindleDirection::Off; }
 };
 
 /// Override percentages, and which of them the program lets act (grblHAL M48 to M53).

@@ -27,7 +27,7 @@ class Cycle {
   void pause();
   /// Stops a jog and drops what is left of it.
   void jog_cancel();
-  /// The probe has touched: decelerate; motion_cancelled() when the machine rests.
+  /// The probe has touched: decelerate and become idle, in a hold when that ends.
   void cancel_motion();
   /// 0x19: decelerate, then forget everything; no alarm.
   void stop();
@@ -62,13 +62,14 @@ class Cycle {
  private:
   /// Why the machine is decelerating.
   enum class Halt : std::uint8_t { None, Hold, JogCancel, MotionCancel, Stop, Door, SoftLimit };
-  enum class Restoring : std::uint8_t { No, Spindle, Coolant, Hold };
+  enum class Restoring : std::uint8_t { No, Spindle, Mist, Coolant, Hold };
 
   void auto_start(int more_passes);
   void run_or_idle_after(int passes);
   void guard_limits();
   void handle(const motion::ExecutorEvent& event);
   void halt(Halt reason);
+  bool may_interrupt_cancel();
   void come_to_rest();
   void end_motion();
   [[nodiscard]] MachineState resting_state() const {
@@ -90,6 +91,8 @@ class Cycle {
   [[nodiscard]] Accessories what_stays_on() const;
   void rest_parked();
   void restore_next();
+  /// False if there is none left to switch on.
+  bool restore_coolant();
   void finish_door();
   void finish_resume(bool was_stopped);
 
@@ -103,6 +106,8 @@ class Cycle {
   bool moving_ = false;
   bool holds_after_thread_ = false;
   Instant spindle_missed_at_ = kNever;
+  /// The probe has touched in a hold: what is left goes when the hold ends.
+  bool drops_rest_ = false;
   std::vector<motion::ThresholdCrossed> contacts_;
 };
 

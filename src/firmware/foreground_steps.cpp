@@ -294,6 +294,7 @@ bool Foreground::operator()(Probe& step) {
   if (step.phase == Probe::Phase::Check) {
     if (begin_probe(step)) return true;
   }
+  const auto rests = [this] { return board_.state == MachineState::Idle || board_.state == MachineState::Tool; };
   if (step.phase == Probe::Phase::Moving) {
     const auto contacts = cycle_.take_contacts();
     const bool touched = !contacts.empty() || board_.probe_triggered() != step.move.away;
@@ -301,11 +302,11 @@ bool Foreground::operator()(Probe& step) {
       contact_ = contacts.empty() ? board_.steps() : contacts.front().steps;
       step.phase = Probe::Phase::Cancelling;
       cycle_.cancel_motion();
-    } else if (cycle_.is_finished() && (board_.state == MachineState::Idle || board_.state == MachineState::Tool)) {
+    } else if (cycle_.is_finished() && rests()) {
       return finish_probe(board_.steps(), false, step.move);
     }
   }
-  if (step.phase == Probe::Phase::Cancelling && !cycle_.is_decelerating()) {
+  if (step.phase == Probe::Phase::Cancelling && !cycle_.is_decelerating() && rests()) {
     return finish_probe(contact_, true, step.move);
   }
   return wait_for(WaitingFor::Contact);

@@ -1,11 +1,21 @@
 #pragma once
-// Where the tool goes while the safety door is open or the machine sleeps (grblHAL `$41`, state_machine.c).
+// Where the tool goes while the safety door is open or the machine sleeps (grblHAL `$41`, state_machine.c; built into
+// Rabbit)
 
 #include <cstdint>
 
 #include "firmware/board.hpp"
 
 namespace kerf::firmware {
+
+/// Where parking leads and how fast.
+struct ParkingPlace {
+  std::size_t axis = 0;
+  float target_mm = 0;
+  float rate_mm_per_min = 0;
+  float pull_out_mm = 0;
+  float pull_out_rate_mm_per_min = 0;
+};
 
 /// Knows the way out and back, and starts its legs; Cycle asks for the next one when a leg has ended. Each leg returns
 /// false if there is nothing to move.
@@ -15,7 +25,8 @@ class Parking {
 
   enum class Leg : std::uint8_t { None, PullOut, Retreat, Return, Plunge, Aborted };
 
-  /// The machine has come to rest: true if it parks, which needs a homed axis that stands below the parking place.
+  /// The machine has come to rest: true if it parks, which needs an axis that stands below the parking place, and is
+  /// homed where the settings say how to park.
   bool begin();
   /// Slowly out of the work, outputs still on.
   bool pull_out();
@@ -35,9 +46,8 @@ class Parking {
 
  private:
   [[nodiscard]] bool is_enabled() const;
-  [[nodiscard]] float number(int id) const { return static_cast<float>(board_.settings.number(id)); }
-  [[nodiscard]] std::size_t axis() const { return board_.settings.mask(setting::kParkingAxis); }
-  bool start(Leg leg, float axis_mm, int rate_setting);
+  [[nodiscard]] ParkingPlace place() const;
+  bool start(Leg leg, float axis_mm, float rate_mm_per_min);
 
   Board& board_;
   Leg leg_ = Leg::None;

@@ -216,7 +216,20 @@ struct RealtimeRules {
   /// Settings with the waits for spindle and coolant before a door or hold ends; where they are missing 4 s and 1 s.
   int door_spindle_setting = 392;
   int door_coolant_setting = 393;
+  /// Rabbit: after a door mist and flood both come on if one was; the wait between them.
+  int door_mist_setting = 0;
   bool door_again_ignored = false;  ///< 0x84 while in Door already
+  /// A hold stays one if the probe touches while it slows down, and `~` drops the rest; grblHAL does not see the touch.
+  bool hold_keeps_probe_contact = false;
+};
+
+/// Where the tool goes while the safety door is open, where that is compiled in (SourceRabbit/RabbitGRBL Config.h):
+/// along Z, with homing enabled.
+struct FixedParking {
+  float target_mm = 0;
+  float rate_mm_per_min = 0;
+  float pull_out_mm = 0;
+  float pull_out_rate_mm_per_min = 0;
 };
 
 /// How long the main loop keeps queued motion waiting while the machine rests, as in the recordings of real firmware
@@ -267,6 +280,7 @@ struct Personality {
   /// Rabbit waits after it has switched the spindle (`$37`, `$38`) or a coolant on (`$60`, `$61`).
   bool waits_after_switching = false;
   bool takes_up_backlash = false;  ///< Rabbit: `$180` on
+  std::optional<FixedParking> fixed_parking{};
   /// `$22`=0 takes `$20` back.
   bool soft_limits_need_homing = true;
   bool tells_build_at_length = false;    ///< `$I` says as much as `$I+`

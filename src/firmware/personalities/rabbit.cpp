@@ -142,11 +142,16 @@ const Personality kRabbit = {
     .realtime = {.reads_while_slowing = true,
                  .toggles_coolant_in_jog = true,
                  .door_spindle_setting = 37,
-                 .door_coolant_setting = 60},
+                 .door_coolant_setting = 60,
+                 .door_mist_setting = 61,
+                 .hold_keeps_probe_contact = true},
     .full_buffer_drops_realtime = true,
     .names_settings = true,
     .waits_after_switching = true,
     .takes_up_backlash = true,
+    .fixed_parking =
+        FixedParking{
+            .target_mm = -5.0F, .rate_mm_per_min = 800.0F, .pull_out_mm = 5.0F, .pull_out_rate_mm_per_min = 250.0F},
     .soft_limits_need_homing = false,
     .version_has_user_text = false,
     .check_mode_is_silent = true,
