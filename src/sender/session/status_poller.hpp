@@ -30,11 +30,11 @@ struct ReportFacts {
 /// How the link answers, for people.
 struct LinkHealth {
   /// Age of the last report; empty before the first.
-  std::optional<double> report_age_s;
+  std::optional<double> report_age_s{};
   /// Questions have been left unanswered for this long; empty while answers come.
-  std::optional<double> silent_for_s;
+  std::optional<double> silent_for_s{};
   /// Time from the last question to its report.
-  std::optional<double> answer_time_s;
+  std::optional<double> answer_time_s{};
   double ask_every_s = 0;
   /// Reports come unasked.
   bool automatic = false;
