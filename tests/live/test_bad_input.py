@@ -68,7 +68,7 @@ class Options(LiveTest):
         self.assertIn("kerf run", result.stdout)
 
     def test_addresses(self):
-        for url, word in (("ws://host:81", "ws"), ("host", "host:PORT"), ("host:99999", "99999"),
+        for url, word in (("ftp://host:81", "ftp"), ("host", "host:PORT"), ("host:99999", "99999"),
                           ("virtual:marlin", "marlin"), ("virtual:grbl?speed=warp", "warp"),
                           ("/dev/ttyUSB0?baud=fast", "fast"), ("", "empty")):
             for command in (["run", example("facing.nc")], ["info"], ["console"]):

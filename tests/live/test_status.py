@@ -57,8 +57,12 @@ class Status(LiveTest):
     def test_watch_on_a_terminal_grows_old(self):
         status = b"<Idle|MPos:1.000,2.000,3.000|FS:0,0|WCO:0.000,0.000,0.000>\r\n"
         talking = [True]
+        polled = []
 
         def answer(heard):
+            if heard.strip(b"?"):
+                polled.clear()
+            polled.append(heard)
             reply = b"ok\r\n" * heard.count(b"\n")
             if heard == b"$I\n":
                 reply = b"[VER:1.1h.20190830:]\r\n[OPT:V,15,128]\r\n" + reply
@@ -68,6 +72,8 @@ class Status(LiveTest):
 
         with Peer(answer) as peer, OnTerminal("status", "--watch", "--machine", peer.url) as terminal:
             terminal.wait_for(r"Idle  X1\.000 Y2\.000 Z3\.000")
+            while len(polled) < 10:  # only status questions: the controller is known
+                time.sleep(0.05)
             talking[0] = False
             terminal.wait_for(r"not answering for 2\.\d s  Idle")
             talking[0] = True
