@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "common/base/text.hpp"
@@ -326,6 +327,19 @@ void add_common_evidence(Explanation& explanation, const Question& about) {
   evidence.push_back(lines + ".");
 }
 
+/// The controller's text, with its title only where the headline has not said that already.
+std::string text_beyond_headline(const Explanation& explanation) {
+  std::string_view text = explanation.text;
+  const std::string_view title = explanation.title;
+  const bool repeats = base::starts_with_ignoring_case(text, title);
+  const bool headline_tells = explanation.headline.find(title) != std::string::npos;
+  if (repeats && headline_tells) text.remove_prefix(title.size());
+  const auto first = text.find_first_not_of(". ");
+  if (first == std::string_view::npos) return {};
+  text.remove_prefix(first);
+  return repeats || headline_tells ? std::string{text} : explanation.title + ". " + std::string{text};
+}
+
 }  // namespace
 
 Explanation explain(const Incident& incident, const CodeFact& meaning, const MachineKnowledge& machine) {
@@ -365,11 +379,7 @@ Explanation explain_code(IncidentKind kind, const CodeFact& meaning, const vocab
 
 std::vector<std::string> details_of(const Explanation& explanation) {
   std::vector<std::string> lines;
-  const bool repeats = base::starts_with_ignoring_case(explanation.text, explanation.title);
-  if (!explanation.text.empty()) {
-    lines.push_back(repeats || explanation.title.empty() ? explanation.text
-                                                         : explanation.title + ". " + explanation.text);
-  }
+  if (std::string text = text_beyond_headline(explanation); !text.empty()) lines.push_back(std::move(text));
   for (const std::string& evidence : explanation.evidence) lines.push_back("- " + evidence);
   if (explanation.kind == IncidentKind::Alarm) {
     switch (explanation.position) {

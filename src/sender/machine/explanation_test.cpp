@@ -170,5 +170,19 @@ TEST(RealtimeAlphabet, SaysWhatWouldBeEaten) {
   EXPECT_THAT(why_eaten("$I=caf\xC3\xA9", hal, true).value_or(""), HasSubstr("\\xC3"));
 }
 
+TEST(ExplanationDetails, DoNotSayTheHeadlineAgain) {
+  Explanation told;
+  told.headline = "Error 20: Unsupported g-code.";
+  told.title = "Unsupported g-code";
+  told.text = "Unsupported g-code. Remove it.";
+  EXPECT_THAT(details_of(told), Contains("Remove it."));
+  told.headline = "Error 20: G77 is not known.";
+  EXPECT_THAT(details_of(told), Contains("Unsupported g-code. Remove it."));
+  told.text = "Remove it.";
+  EXPECT_THAT(details_of(told), Contains("Unsupported g-code. Remove it."));
+  told.title.clear();
+  EXPECT_THAT(details_of(told), Contains("Remove it."));
+}
+
 }  // namespace
 }  // namespace kerf::machine
