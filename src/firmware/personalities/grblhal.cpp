@@ -13,8 +13,6 @@ namespace {
 constexpr StateSet kIdleOrAlarm = {MachineState::Idle, MachineState::Alarm};
 constexpr StateSet kSettled = {MachineState::Idle, MachineState::Alarm, MachineState::Check};
 constexpr StateSet kInformed = {MachineState::Idle, MachineState::Alarm, MachineState::Check, MachineState::Sleep};
-constexpr StateSet kNotInCycle = {MachineState::Idle,  MachineState::Jog,  MachineState::Home,  MachineState::Alarm,
-                                  MachineState::Check, MachineState::Door, MachineState::Sleep, MachineState::Tool};
 
 constexpr CommandRow kCommands[] = {
     {.name = "G", .command = Command::ParserState},
