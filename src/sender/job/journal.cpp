@@ -1,0 +1,31 @@
+#include "sender/job/journal.hpp"
+
+#include "common/base/overloaded.hpp"
+
+namespace kerf::job {
+
+void JobHistory::fold(const JournalRecord& record) {
+  last_at = record.at;
+  std::visit(base::Overloaded{
+                 [&](const JobBegun& first) {
+                   begun = first;
+                   began_at = record.at;
+                 },
+                 [&](const JobAdvanced& advanced) {
+                   if (advances.size() >= 2 * kAdvancesKept) {
+                     advances.erase(advances.begin(), advances.end() - kAdvancesKept);
+                   }
+                   advances.push_back(advanced);
+                 },
+                 [&](const JobNoted& note) { notes.push_back({.at = record.at, .note = note}); },
+                 [&](const JobClosed& last) { closed = last; },
+             },
+             record.what);
+}
+
+JobOutcome JobHistory::outcome() const {
+  if (!closed) return JobOutcome::CutOff;
+  return closed->state.phase == JobPhase::Finished ? JobOutcome::Complete : JobOutcome::Unfinished;
+}
+
+}  // namespace kerf::job
