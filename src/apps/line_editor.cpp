@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "apps/output.hpp"
-#include "sender/machine/secrets.hpp"
+#include "common/protocol/secrets.hpp"
 
 namespace kerf::apps {
 namespace {
@@ -101,7 +101,7 @@ class LineEditor final : public InputReader {
     if (!line.empty()) {
       HistEvent event;
       // The history is a file: a password must not stay there.
-      if (machine::Secrets().secret_in(line).empty()) history(history_, &event, H_ENTER, line.c_str());
+      if (protocol::Secrets().secret_in(line).empty()) history(history_, &event, H_ENTER, line.c_str());
     }
     callbacks_.line(line);
     begin_line();

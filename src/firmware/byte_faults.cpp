@@ -8,6 +8,8 @@ namespace kerf::firmware {
 namespace {
 
 constexpr int kBits = 8;
+/// Longer than any line that firmware takes.
+constexpr std::size_t kLongestLine = 256;
 
 }  // namespace
 
@@ -33,25 +35,34 @@ bool ByteFaults::hits(ByteFault kind) {
 void ByteFaults::send(Instant now, std::string_view bytes) {
   for (const char byte : bytes) {
     ++bytes_sent_;
-    if (hits(ByteFault::Drop)) {
-      record(now, ByteFault::Drop, byte, byte);
-      continue;
+    send_byte(now, byte);
+    if (byte == '\r' || byte == '\n') {
+      line_.clear();
+    } else if (line_.size() < kLongestLine) {
+      line_ += byte;
     }
-    char carried = byte;
-    if (hits(ByteFault::Corrupt)) {
-      carried = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << (draw() % kBits)));
-      record(now, ByteFault::Corrupt, byte, carried);
-    }
-    Instant arrives_at = now;
-    if (hits(ByteFault::Delay)) {
-      arrives_at += orders_.at(static_cast<std::size_t>(ByteFault::Delay)).delay;
-      record(now, ByteFault::Delay, byte, byte);
-    }
+  }
+}
+
+void ByteFaults::send_byte(Instant now, char byte) {
+  if (hits(ByteFault::Drop)) {
+    record(now, ByteFault::Drop, byte, byte);
+    return;
+  }
+  char carried = byte;
+  if (hits(ByteFault::Corrupt)) {
+    carried = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << (draw() % kBits)));
+    record(now, ByteFault::Corrupt, byte, carried);
+  }
+  Instant arrives_at = now;
+  if (hits(ByteFault::Delay)) {
+    arrives_at += orders_.at(static_cast<std::size_t>(ByteFault::Delay)).delay;
+    record(now, ByteFault::Delay, byte, byte);
+  }
+  carry(arrives_at, carried);
+  if (hits(ByteFault::Duplicate)) {
+    record(now, ByteFault::Duplicate, byte, byte);
     carry(arrives_at, carried);
-    if (hits(ByteFault::Duplicate)) {
-      record(now, ByteFault::Duplicate, byte, byte);
-      carry(arrives_at, carried);
-    }
   }
 }
 
@@ -68,7 +79,8 @@ void ByteFaults::record(Instant now, ByteFault kind, char byte, char became) {
     return last.kind == kind && last.at == now && last.first + last.bytes.size() == bytes_sent_;
   };
   if (records_.empty() || !continues(records_.back())) {
-    records_.push_back({.at = now, .kind = kind, .first = bytes_sent_, .bytes = {}, .became = {}});
+    records_.push_back(
+        {.at = now, .kind = kind, .first = bytes_sent_, .bytes = {}, .became = {}, .line_before = line_});
   }
   records_.back().bytes += byte;
   if (kind == ByteFault::Corrupt) records_.back().became += became;

@@ -33,6 +33,7 @@ struct ByteFaultRecord {
   std::uint64_t first = 0;  ///< the first one's number, counted from 1 in everything that this wire was given
   std::string bytes;        ///< as they were sent
   std::string became;       ///< of ByteFault::Corrupt: as they arrive
+  std::string line_before;  ///< what was sent of the same line before the first one
 };
 
 /// One direction of a link. Without orders it hands over what it is given, at once. The same seed, orders and bytes
@@ -63,12 +64,15 @@ class ByteFaults {
 
   bool hits(ByteFault kind);
   [[nodiscard]] std::uint64_t draw();
+  void send_byte(Instant now, char byte);
   void carry(Instant arrives_at, char byte);
   void record(Instant now, ByteFault kind, char byte, char became);
 
   std::array<ByteFaultOrder, kByteFaults> orders_{};
   std::uint64_t random_;
   std::uint64_t bytes_sent_ = 0;
+  /// The line under way as it was sent, as far as anybody looks at it.
+  std::string line_;
   std::deque<Packet> packets_;
   std::vector<ByteFaultRecord> records_;
 };

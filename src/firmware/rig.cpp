@@ -7,6 +7,7 @@
 
 #include "common/base/overloaded.hpp"
 #include "common/base/text.hpp"
+#include "common/protocol/secrets.hpp"
 
 namespace kerf::firmware {
 namespace {
@@ -64,7 +65,10 @@ void Rig::on_pendant_bytes(Instant now, std::string_view bytes) {
 
 void Rig::submit(Instant now, const ScriptLine& line, std::string_view from) {
   advance_to(now);
-  records_.push_back({.at = now_, .kind = RigRecordKind::Order, .from = std::string(from), .what = line.text});
+  records_.push_back({.at = now_,
+                      .kind = RigRecordKind::Order,
+                      .from = std::string(from),
+                      .what = protocol::Secrets{}.hidden(line.text)});
   if (line.deed) carry_out(*line.deed);
   play_due_lines();
 }
@@ -211,7 +215,7 @@ bool Rig::play_due_line(PlayerId id, Player& player) {
   records_.push_back({.at = now_,
                       .kind = player.kind,
                       .from = is_script ? player.name + ":" + std::to_string(line->number) : player.name,
-                      .what = line->text});
+                      .what = protocol::Secrets{}.hidden(line->text)});
   if (line->deed) carry_out(*line->deed);
   lines_done_.push_back({.player = id, .number = line->number});
   note_state();
@@ -232,12 +236,15 @@ void Rig::note_state() {
 }
 
 void Rig::note_faults(ByteFaults& wire, std::string_view direction) {
+  const protocol::Secrets secrets;
   for (const ByteFaultRecord& record : wire.take_records()) {
     std::string what{kFaultVerbs.at(static_cast<std::size_t>(record.kind))};
     what += " byte " + std::to_string(record.first);
     if (record.bytes.size() > 1) what += " to " + std::to_string(record.first + record.bytes.size() - 1);
-    what += " " + std::string(direction) + ": " + base::escape(record.bytes);
-    if (!record.became.empty()) what += " became " + base::escape(record.became);
+    what += " " + std::string(direction) + ": " + base::escape(secrets.hidden_part(record.line_before, record.bytes));
+    if (!record.became.empty()) {
+      what += " became " + base::escape(secrets.hidden_part(record.line_before, record.became));
+    }
     records_.push_back({.at = record.at, .kind = RigRecordKind::Fault, .from = {}, .what = std::move(what)});
   }
 }

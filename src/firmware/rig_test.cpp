@@ -121,6 +121,17 @@ TEST(Rig, LostBytesAreLostAndLogged) {
   EXPECT_EQ(site.send("\n"), "");
 }
 
+TEST(Rig, ItsLogHasNoPasswords) {
+  Site site;
+  site.wait(1s);
+  site.send("$75=hun");
+  site.order("drop to next 4");
+  site.send("ter2\n");
+  site.order("inject to $75=hunter2\\n");
+  ASSERT_EQ(site.log(RigRecordKind::Fault).size(), 1U);
+  for (const RigRecord& record : site.records) EXPECT_EQ(record.what.find("ter2"), std::string::npos) << record.what;
+}
+
 TEST(Rig, LateAnswersComeLate) {
   Site site;
   site.order("delay from 30ms");

@@ -30,16 +30,22 @@ std::vector<std::string> Interview::questions(const CapabilityCollector& known) 
   // The plain form comes first while the firmware is not known: Grbl refuses the other.
   if (was_asked("$I") || !dialect.answers_full_status) list.emplace_back("$I");
   if (dialect.answers_full_status) list.emplace_back("$I+");
-  list.insert(list.end(), {"$G", "$#", "$$"});
-  if (!enumerate_) return list;
-  const bool enumerates = known.has_token("ENUMS");
-  if (enumerates || dialect.can_enumerate_codes) list.insert(list.end(), {"$EA", "$EE"});
-  if (enumerates) list.insert(list.end(), {"$EG", "$ES"});
-  if (enumerates && known.has_token("SED")) list.emplace_back("$ESH");
-  if (enumerates) list.emplace_back("$SPINDLESH");
-  if (was_asked("$SPINDLESH") && !known.knows_spindles()) list.emplace_back("$SPINDLES");
-  if (!dialect.named_settings_query.empty()) list.emplace_back(dialect.named_settings_query);
+  list.insert(list.end(), {"$G", "$#"});
+  if (enumerate_) add_enumerations(list, known);
+  // Behind the descriptions: they say which values are passwords.
+  list.emplace_back("$$");
+  if (enumerate_ && !dialect.named_settings_query.empty()) list.emplace_back(dialect.named_settings_query);
   return list;
+}
+
+void Interview::add_enumerations(std::vector<std::string>& list, const CapabilityCollector& known) const {
+  const bool enumerates = known.has_token("ENUMS");
+  if (enumerates || known.dialect().can_enumerate_codes) list.insert(list.end(), {"$EA", "$EE"});
+  if (!enumerates) return;
+  list.insert(list.end(), {"$EG", "$ES"});
+  if (known.has_token("SED")) list.emplace_back("$ESH");
+  list.emplace_back("$SPINDLESH");
+  if (was_asked("$SPINDLESH") && !known.knows_spindles()) list.emplace_back("$SPINDLES");
 }
 
 }  // namespace kerf::machine

@@ -23,6 +23,7 @@ class Interview {
 
  private:
   [[nodiscard]] std::vector<std::string> questions(const CapabilityCollector& known) const;
+  void add_enumerations(std::vector<std::string>& list, const CapabilityCollector& known) const;
   [[nodiscard]] bool was_asked(const std::string& question) const;
 
   bool enumerate_;

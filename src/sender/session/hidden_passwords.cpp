@@ -11,7 +11,7 @@ namespace {
 
 class Hider {
  public:
-  explicit Hider(const machine::Secrets& secrets) : secrets_(secrets) {}
+  explicit Hider(const protocol::Secrets& secrets) : secrets_(secrets) {}
 
   void operator()(LineSent& sent) const { hide(sent.text); }
   void operator()(LinesLost& lost) const {
@@ -38,12 +38,12 @@ class Hider {
     if (refusal) hide(refusal->text);
   }
 
-  const machine::Secrets& secrets_;
+  const protocol::Secrets& secrets_;
 };
 
 }  // namespace
 
-void hide_passwords(Event& event, const machine::Secrets& secrets) {
+void hide_passwords(Event& event, const protocol::Secrets& secrets) {
   std::visit(Hider(secrets), event);
 }
 

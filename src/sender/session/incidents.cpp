@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "sender/machine/secrets.hpp"
+#include "common/protocol/secrets.hpp"
 
 namespace kerf::session {
 namespace {
@@ -20,7 +20,7 @@ bool is_evidence(streaming::Purpose purpose) {
 IncidentLine line_of(const streaming::OwedLine& line, bool answered) {
   const bool is_system_line = line.text.starts_with('$');
   return {.file_line = line.file_line,
-          .text = is_system_line ? machine::Secrets{}.hidden(line.text) : line.text,
+          .text = is_system_line ? protocol::Secrets{}.hidden(line.text) : line.text,
           .answered = answered};
 }
 

@@ -1,9 +1,7 @@
 #include "sender/session/password_mask.hpp"
 
 #include <algorithm>
-#include <variant>
 
-#include "common/protocol/decode.hpp"
 #include "common/protocol/message_reader.hpp"
 
 namespace kerf::session {
@@ -11,7 +9,6 @@ namespace {
 
 constexpr std::string_view kLineEnds = "\r\n";
 constexpr std::string_view kDigits = "0123456789abcdefghijklmnopqrstuvwxyz";
-constexpr std::string_view kDescription = "[SETTING:";
 
 }  // namespace
 
@@ -42,7 +39,7 @@ std::string PasswordMask::masked_line(std::string_view line) {
 }
 
 std::string PasswordMask::masked_text(std::string_view text) {
-  if (text.find('$') == std::string_view::npos) return std::string(text);
+  if (text.find_first_of("$[") == std::string_view::npos) return std::string(text);
   std::string shown;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find_first_of(kLineEnds), text.size());
@@ -78,10 +75,7 @@ std::string StreamMask::push(std::string_view bytes, PasswordMask& mask) {
 }
 
 void StreamMask::end_line(std::string& out, PasswordMask& mask) {
-  if (line_.starts_with(kDescription)) {
-    const auto message = protocol::decode(line_);
-    if (const auto* row = std::get_if<protocol::SettingDefinition>(&message)) mask.learn(*row);
-  }
+  mask.learn_from(line_);
   if (line_.size() > given_) out.append(mask.masked_line(line_), given_);
   line_.clear();
   given_ = 0;

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sender/machine/secrets.hpp"
+#include "common/protocol/secrets.hpp"
 
 namespace kerf::session {
 
@@ -16,8 +16,9 @@ namespace kerf::session {
 /// and masking a masked log changes nothing.
 class PasswordMask {
  public:
-  void learn(const protocol::SettingDefinition& row) { secrets_.learn(row); }
-  [[nodiscard]] const machine::Secrets& secrets() const { return secrets_; }
+  /// A line of the controller may say which settings hold passwords.
+  void learn_from(std::string_view line) { secrets_.learn_from(line); }
+  [[nodiscard]] const protocol::Secrets& secrets() const { return secrets_; }
 
   /// A line without its end.
   [[nodiscard]] std::string masked_line(std::string_view line);
@@ -27,7 +28,7 @@ class PasswordMask {
   [[nodiscard]] std::string token_of(std::string_view password);
 
  private:
-  machine::Secrets secrets_;
+  protocol::Secrets secrets_;
   /// In the order of their first appearance.
   std::vector<std::string> passwords_;
 };

@@ -8,10 +8,12 @@ namespace kerf::session {
 namespace {
 
 constexpr std::string_view kHeard =
-    "$74=workshop\r\n$75=hunter2\r\nok\r\n[SETTING:9001|1|Broker password||8|x(32)||32|0|0]\r\n$9001=12345\r\n"
+    "$74=workshop\r\n[ESP101]hunt4\r\n$75=hunter2\r\nok\r\n[SETTING:9001|1|Broker "
+    "password||8|x(32)||32|0|0]\r\n$9001=12345\r\n"
     "$77=hunter3\r\n$75=hunter2\r\n<Idle|MPos:0.000,0.000,0.000>\r\n";
 constexpr std::string_view kShown =
-    "$74=workshop\r\n$75=******1\r\nok\r\n[SETTING:9001|1|Broker password||8|x(32)||32|0|0]\r\n$9001=****1\r\n"
+    "$74=workshop\r\n[ESP101]****1\r\n$75=******1\r\nok\r\n[SETTING:9001|1|Broker "
+    "password||8|x(32)||32|0|0]\r\n$9001=****2\r\n"
     "$77=******2\r\n$75=******1\r\n<Idle|MPos:0.000,0.000,0.000>\r\n";
 
 TEST(PasswordMask, TellsPasswordsApartWithoutShowingThem) {

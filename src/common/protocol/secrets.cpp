@@ -1,13 +1,16 @@
-#include "sender/machine/secrets.hpp"
+#include "common/protocol/secrets.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <variant>
 
 #include "common/base/text.hpp"
+#include "common/protocol/decode.hpp"
 #include "common/vocabulary/dialect.hpp"
 #include "common/vocabulary/settings.hpp"
 
-namespace kerf::machine {
+namespace kerf::protocol {
 namespace {
 
 using vocabulary::SettingType;
@@ -52,6 +55,49 @@ std::string_view value_in(std::string_view line, std::size_t value_at) {
   return value;
 }
 
+constexpr std::string_view kEspCommand = "[ESP";
+/// Commands whose argument is a password, or has some: of the network and of the access point, of the user, and of the
+/// service that sends notifications (ESP3D, documentation of its commands).
+constexpr std::array<std::string_view, 6> kEspPasswordCommands{"[ESP101]", "[ESP106]", "[ESP550]",
+                                                               "[ESP551]", "[ESP555]", "[ESP610]"};
+/// `[ESP401]P=1 T=S V=hunter2`: which of the positions hold passwords differs from one firmware to the next.
+constexpr std::string_view kEspSetCommand = "[ESP401]";
+
+std::string upper_cased(std::string_view text) {
+  std::string upper(text);
+  std::ranges::transform(upper, upper.begin(), base::to_upper);
+  return upper;
+}
+
+std::optional<std::size_t> esp_command_at(std::string_view line) {
+  for (std::size_t at = line.find('['); at != std::string_view::npos; at = line.find('[', at + 1)) {
+    if (base::starts_with_ignoring_case(line.substr(at), kEspCommand)) return at;
+  }
+  return std::nullopt;
+}
+
+/// `[ESP101]hunter2`, `[ESP444]RESTART pwd=hunter2`: where the passwords of a command begin; nothing in other lines.
+std::optional<std::size_t> esp_secret_at(std::string_view line) {
+  const auto command_at = esp_command_at(line);
+  if (!command_at) return std::nullopt;
+  const std::string command = upper_cased(line.substr(*command_at));
+  const auto behind = [&](std::string_view key) -> std::optional<std::size_t> {
+    const std::size_t at = command.find(key);
+    return at == std::string::npos ? std::nullopt : std::optional(*command_at + at + key.size());
+  };
+  for (const std::string_view whole : kEspPasswordCommands) {
+    if (command.starts_with(whole)) return *command_at + whole.size();
+  }
+  const auto value = command.starts_with(kEspSetCommand) ? behind("V=") : std::nullopt;
+  return value ? value : behind("PWD=");
+}
+
+/// Names of settings tell it where nobody else does: `$Sta/Password` of FluidNC.
+bool is_named_as_password(std::string_view id) {
+  const std::string name = upper_cased(id);
+  return name.contains("PASSWORD") || name.contains("/PSK");
+}
+
 using KnownSettings = std::map<std::string, bool, std::less<>>;
 
 /// The settings of all firmwares' tables; true for passwords.
@@ -74,9 +120,20 @@ const KnownSettings& settings_of_tables() {
 
 }  // namespace
 
-void Secrets::learn(const protocol::SettingDefinition& row) {
+void Secrets::learn(const SettingDefinition& row) {
   bool& is_password = told_[std::to_string(row.id)];
   is_password = is_password || row.type == static_cast<int>(SettingType::Password);
+}
+
+void Secrets::learn(const NewOptions& options) {
+  has_descriptions_ = std::ranges::find(options.flags, "ENUMS") != options.flags.end();
+}
+
+void Secrets::learn_from(std::string_view line) {
+  if (!line.starts_with("[SETTING:") && !line.starts_with("[NEWOPT:")) return;
+  const auto message = decode(line);
+  if (const auto* row = std::get_if<SettingDefinition>(&message)) learn(*row);
+  if (const auto* options = std::get_if<NewOptions>(&message)) learn(*options);
 }
 
 Secrets::Kind Secrets::kind_of(std::string_view id) const {
@@ -86,19 +143,21 @@ Secrets::Kind Secrets::kind_of(std::string_view id) const {
   const auto tabled = tables.find(id);
   const auto told = told_.find(id);
   if ((tabled != tables.end() && tabled->second) || (told != told_.end() && told->second)) return Kind::Password;
-  return tabled == tables.end() && told == told_.end() ? Kind::Unknown : Kind::Open;
+  if (tabled != tables.end() || told != told_.end()) return Kind::Open;
+  return is_named_as_password(id) ? Kind::Password : Kind::Unknown;
 }
 
 bool Secrets::is_secret(std::string_view id, std::string_view value) const {
   switch (kind_of(id)) {
     case Kind::Password: return !value.empty();
     case Kind::Open: return false;
-    case Kind::Unknown: return !is_number(value);
+    case Kind::Unknown: return !is_number(value) || (!value.empty() && has_descriptions_ && told_.empty());
   }
   return true;
 }
 
 std::string_view Secrets::secret_in(std::string_view line) const {
+  if (const auto at = esp_secret_at(line)) return line.substr(*at);
   std::size_t from = 0;
   while (const auto found = next_assignment(line, from)) {
     const std::string_view value = value_in(line, found->value_at);
@@ -109,6 +168,7 @@ std::string_view Secrets::secret_in(std::string_view line) const {
 }
 
 std::size_t Secrets::doubtful_from(std::string_view unfinished) const {
+  if (const auto command_at = esp_command_at(unfinished)) return *command_at;
   std::size_t from = 0;
   while (const auto found = next_assignment(unfinished, from)) {
     if (kind_of(found->id) != Kind::Open) return found->value_at;
@@ -125,4 +185,16 @@ std::string Secrets::hidden(std::string_view line) const {
   return shown;
 }
 
-}  // namespace kerf::machine
+std::string Secrets::hidden_part(std::string_view before, std::string_view part) const {
+  std::string line(before);
+  std::string shown;
+  for (const char letter : part) {
+    const bool ends = letter == '\r' || letter == '\n';
+    if (!ends) line += letter;
+    shown += !ends && doubtful_from(line) < line.size() ? '*' : letter;
+    if (ends) line.clear();
+  }
+  return shown;
+}
+
+}  // namespace kerf::protocol
