@@ -8,6 +8,7 @@
 #include <boost/describe.hpp>
 
 #include "common/base/time.hpp"
+#include "sender/job/executing_lines.hpp"
 #include "sender/job/timeline.hpp"
 
 namespace kerf::job {
@@ -23,6 +24,8 @@ struct Progress {
   std::uint32_t file_line = 0;
   /// File line that the tool is cutting, as far as the rehearsal can tell; empty without one.
   std::optional<std::uint32_t> cutting_line;
+  /// Lines that the machine may really be executing, from what it reports.
+  ExecutingLines executing{};
   /// Of the rehearsed time, else of the file's bytes.
   double percent = 0;
   double elapsed_s = 0;
@@ -38,7 +41,7 @@ struct Progress {
 };
 BOOST_DESCRIBE_STRUCT(Progress, (),
                       (lines_total, lines_acknowledged, bytes_total, bytes_acknowledged, file_line, cutting_line,
-                       percent, elapsed_s, held_s, remaining_s))
+                       executing, percent, elapsed_s, held_s, remaining_s))
 
 /// Keeps the account behind a Progress.
 class ProgressMeter {
@@ -51,6 +54,7 @@ class ProgressMeter {
   void set_held(Instant now, bool held);
   /// The feed override, which the rehearsal did not know. Percent, above 0.
   void set_feed_override(Instant now, int percent);
+  void set_executing(const ExecutingLines& lines) { progress_.executing = lines; }
   /// The whole file is dealt with.
   void complete();
   /// Progress at `now`; time stands still after `stop`.

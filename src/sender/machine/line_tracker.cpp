@@ -54,9 +54,34 @@ void load_offsets(gcode::Offsets& offsets, const Snapshot& snapshot) {
   if (snapshot.tool_length.offset_mm) offsets.tool_length = tool_length_values(*snapshot.tool_length.offset_mm);
 }
 
+std::string number_word(char letter, const std::optional<double>& value) {
+  constexpr int kDecimals = 3;
+  return value && *value > 0 ? letter + base::to_fixed(*value, kDecimals) : std::string{};
+}
+
+/// What has to be said in millimetres, before the modes.
+std::string rates_line(const ParserModes& modes) {
+  const bool is_rate = modes.feed_mode.empty() || modes.feed_mode == "G94";
+  return "G21" + (is_rate ? number_word('F', modes.feed_mm_per_min) : "") + number_word('S', modes.spindle_rpm);
+}
+
+/// Words of `[GC:]` for which Snapshot has no place of its own: diameters, and where canned cycles retract to.
+constexpr std::string_view kFurtherModes[] = {"G7", "G8", "G98", "G99"};
+
+/// Factors of scaling, and what macros do, are told nowhere.
+constexpr std::string_view kUntold[] = {"G51", "G66"};
+
+bool has_word(const Snapshot& snapshot, std::string_view word) {
+  return std::ranges::find(snapshot.parser_words, word) != snapshot.parser_words.end();
+}
+
 /// Modes that a line of words may set without moving anything.
-std::string mode_line(const ParserModes& modes) {
+std::string mode_line(const Snapshot& snapshot) {
+  const ParserModes& modes = snapshot.modes;
   std::string line;
+  for (const std::string_view word : kFurtherModes) {
+    if (has_word(snapshot, word)) line += word;
+  }
   for (const std::string* word :
        {&modes.plane, &modes.units, &modes.distance, &modes.feed_mode, &modes.work_coordinates, &modes.spindle}) {
     line += *word;
@@ -87,17 +112,21 @@ bool agrees(const AxisValues& sum, const std::vector<double>& reported) {
 
 }  // namespace
 
-void LineTracker::seed(const Snapshot& snapshot, const vocabulary::Dialect& dialect) {
+void LineTracker::seed(const Snapshot& snapshot, const vocabulary::Dialect& dialect,
+                       gcode::InterpreterSettings settings) {
   interpreter_.reset();
   if (!snapshot.machine_position_mm || !snapshot.work_offset_mm || snapshot.parser_words.empty()) return;
+  const auto is_set = [&](std::string_view word) { return has_word(snapshot, word); };
+  if (!snapshot.scaled_axes.empty() || std::ranges::any_of(kUntold, is_set)) return;
   axes_ = std::min(snapshot.machine_position_mm->size(), vocabulary::kMaxAxes);
-  auto& interpreter =
-      interpreter_.emplace(gcode::rules_for(dialect), gcode::InterpreterSettings{.axes = static_cast<int>(axes_)});
+  settings.axes = static_cast<int>(axes_);
+  auto& interpreter = interpreter_.emplace(gcode::rules_for(dialect), settings);
   load_offsets(interpreter.offsets(), snapshot);
   interpreter.reload_offsets();
   interpreter.sync_position(axis_values(*snapshot.machine_position_mm));
   actions_.clear();
-  if (!interpreter.interpret(mode_line(snapshot.modes), actions_)) {
+  if (!interpreter.interpret(rates_line(snapshot.modes), actions_) ||
+      !interpreter.interpret(mode_line(snapshot), actions_)) {
     interpreter_.reset();
     return;
   }

@@ -16,9 +16,11 @@ namespace kerf::machine {
 class LineTracker {
  public:
   /// The machine rests and its modes, offsets and position are known.
-  void seed(const Snapshot& snapshot, const vocabulary::Dialect& dialect);
+  void seed(const Snapshot& snapshot, const vocabulary::Dialect& dialect, gcode::InterpreterSettings settings = {});
   void forget() { interpreter_.reset(); }
   [[nodiscard]] bool knows() const { return interpreter_.has_value(); }
+  /// The reader, as it stands behind the last line that was accepted; empty while nothing is known.
+  [[nodiscard]] const std::optional<gcode::Interpreter>& reader() const { return interpreter_; }
 
   /// The controller answered ok.
   void on_accepted(std::string_view line);

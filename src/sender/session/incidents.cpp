@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/protocol/secrets.hpp"
+#include "sender/machine/controller_rules.hpp"
 
 namespace kerf::session {
 namespace {
@@ -31,9 +32,10 @@ void Incidents::forget() {
   answered_.clear();
 }
 
-void Incidents::start_from(const machine::Snapshot& snapshot, const vocabulary::Dialect& dialect) {
+void Incidents::start_from(const machine::Snapshot& snapshot, const machine::Capabilities& known,
+                           const vocabulary::Dialect& dialect) {
   if (tracker_.knows() && (snapshot.parser_state_is_old || snapshot.offsets_are_old)) return;
-  tracker_.seed(snapshot, dialect);
+  tracker_.seed(snapshot, dialect, machine::interpreter_settings_of(known));
 }
 
 void Incidents::on_accepted(const streaming::OwedLine& line) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "sender/machine/capabilities.hpp"
 #include "sender/machine/explanation.hpp"
 #include "sender/machine/line_tracker.hpp"
 #include "sender/streaming/ledger.hpp"
@@ -18,7 +19,8 @@ class Incidents {
   /// Nothing is known about modes and position any more.
   void forget();
   /// The machine rests and everything is answered: lines are followed from here.
-  void start_from(const machine::Snapshot& snapshot, const vocabulary::Dialect& dialect);
+  void start_from(const machine::Snapshot& snapshot, const machine::Capabilities& known,
+                  const vocabulary::Dialect& dialect);
   void on_accepted(const streaming::OwedLine& line);
 
   /// An alarm: the oldest line that has no answer is the one being read or executed.
@@ -31,6 +33,8 @@ class Incidents {
   /// The alarm that holds the machine, as it was when it came.
   [[nodiscard]] const std::optional<machine::Incident>& alarm() const { return alarm_; }
   void clear_alarm() { alarm_.reset(); }
+  /// Reads on behind the last line that was accepted; empty while that is not known.
+  [[nodiscard]] const std::optional<gcode::Interpreter>& reader() const { return tracker_.reader(); }
 
  private:
   [[nodiscard]] std::vector<machine::IncidentLine> recent_lines() const;

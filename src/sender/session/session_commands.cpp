@@ -75,7 +75,7 @@ void Session::obey(Instant now, const StartJob& command) {
     return;
   }
   if (dialect.error_latch) streamer_.enqueue(Purpose::ClearLatch, "");
-  incidents_.start_from(snapshot(), dialect);
+  incidents_.start_from(snapshot(), capabilities(), dialect);
   streamer_.feed_from(std::make_unique<ProgramLines>(command.program, form));
   job_.emplace(now, *command.program, dialect.error_latch, command.timeline);
   job_state_ = job_->state();
@@ -138,7 +138,9 @@ void Session::obey(Instant now, const SendLine& command) {
     refuse(*reason, is_eaten ? why_text_is_eaten(command.text).value_or("") : std::string{});
     return;
   }
-  if (streamer_.is_idle() && snapshot().state == MachineState::Idle) incidents_.start_from(snapshot(), dialect());
+  if (streamer_.is_idle() && snapshot().state == MachineState::Idle) {
+    incidents_.start_from(snapshot(), capabilities(), dialect());
+  }
   streamer_.enqueue(Purpose::Operator, command.text);
 }
 
