@@ -7,7 +7,7 @@ PEER ?=
 # How long `make test` runs each fuzz target.
 KERF_FUZZ_SECONDS ?= 20
 
-.PHONY: run build test bench docs tidy format lint clean
+.PHONY: run build test bench bench-stream docs tidy format lint clean
 
 # A part of about four minutes, cut by the built-in virtual grblHAL ten times as fast.
 run: build
@@ -39,6 +39,14 @@ ifeq ($(PEER),)
 else
 	unshare --map-root-user --net sh -c 'ip link set lo up && exec $(BENCH) --peer $(PEER)'
 endif
+
+# How fast Kerf streams, beside the least program that can (bench/README.md). ONLY=speed, wire, hold or memory for
+# a part.
+ONLY ?= all
+bench-stream: build
+	cmake --build --preset release --target stream --target least_counter --target session_cost -j $(JOBS)
+	build/release/bench/session_cost
+	build/release/bench/stream --kerf build/kerf --floor build/release/bench/least_counter --only $(ONLY)
 
 # The tables of docs/protocol, from the code.
 docs: build

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <deque>
-#include <filesystem>
 #include <fstream>
 #include <thread>
 #include <utility>
@@ -18,9 +15,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "common/base/text.hpp"
@@ -40,25 +35,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-double seconds_of(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
-}
-
-/// A child process; `input` becomes its standard input, what it prints is thrown away.
-pid_t start(const std::vector<std::string>& words, int input) {
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  const pid_t child = fork();
-  if (child != 0) return child;
-  const int nowhere = open("/dev/null", O_RDWR);
-  dup2(input < 0 ? nowhere : input, STDIN_FILENO);
-  dup2(nowhere, STDOUT_FILENO);
-  dup2(nowhere, STDERR_FILENO);
-  execv(arguments[0], arguments.data());
-  _exit(127);
-}
-
 bool has_only_loopback() {
   bool only = true;
   auto* const all = if_nameindex();
@@ -73,15 +49,12 @@ class Simulator {
  public:
   Simulator(const std::string& program, const std::string& folder) {
     if (pipe2(input_.data(), O_CLOEXEC) != 0) return;
-    child_ = start({program, "-t", "0", "-p", std::to_string(kPort), "-e", folder + "/EEPROM.DAT", "-b", "/dev/null",
-                    "-s", "/dev/null"},
-                   input_[0]);
+    process_.emplace(std::vector<std::string>{program, "-t", "0", "-p", std::to_string(kPort), "-e",
+                                              folder + "/EEPROM.DAT", "-b", "/dev/null", "-s", "/dev/null"},
+                     input_[0]);
   }
   ~Simulator() {
-    if (child_ > 0) {
-      kill(child_, SIGKILL);
-      waitpid(child_, nullptr, 0);
-    }
+    process_.reset();
     for (const int end : input_) close(end);
   }
   Simulator(const Simulator&) = delete;
@@ -89,7 +62,7 @@ class Simulator {
 
  private:
   std::array<int, 2> input_{-1, -1};
-  pid_t child_ = -1;
+  std::optional<ChildProcess> process_;
 };
 
 /// A line-wise conversation over TCP.
@@ -207,38 +180,15 @@ bool wait_until_idle(Talk& talk) {
   return false;
 }
 
-std::string make_folder() {
-  std::string folder = std::filesystem::temp_directory_path() / "kerf-bench-XXXXXX";
-  return mkdtemp(folder.data()) == nullptr ? "" : folder;
-}
-
 }  // namespace
 
-std::optional<ProcessTook> run_process(const std::vector<std::string>& words) {
-  const auto started = Clock::now();
-  const pid_t child = start(words, -1);
-  int status = 0;
-  rusage used{};
-  if (child < 0 || wait4(child, &status, 0, &used) != child) return std::nullopt;
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return std::nullopt;
-  constexpr double kKilobytes = 1024.0;
-  return ProcessTook{.wall_s = seconds_since(started),
-                     .cpu_s = seconds_of(used.ru_utime) + seconds_of(used.ru_stime),
-                     .peak_mb = static_cast<double>(used.ru_maxrss) / kKilobytes};
-}
-
-ScratchFiles::ScratchFiles(const std::vector<BenchProgram>& programs, std::vector<std::string>& files)
-    : folder_(make_folder()) {
+ScratchFiles::ScratchFiles(const std::vector<BenchProgram>& programs, std::vector<std::string>& files) {
+  std::vector<std::string> written;
   for (const BenchProgram& program : programs) {
-    written_.push_back(folder_ + "/" + std::string{program.name} + ".nc");
-    std::ofstream(written_.back()) << program.text;
+    written.push_back(folder_.path() + "/" + std::string{program.name} + ".nc");
+    std::ofstream(written.back()) << program.text;
   }
-  files.insert(files.begin(), written_.begin(), written_.end());
-}
-
-ScratchFiles::~ScratchFiles() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
+  files.insert(files.begin(), written.begin(), written.end());
 }
 
 BenchProgram head_of(const BenchProgram& program, int lines) {
@@ -252,24 +202,17 @@ std::optional<PeerTook> run_peer(const std::string& simulator, const BenchProgra
     std::fputs("The simulator listens on every interface: run this in a network namespace of its own.\n", stderr);
     return std::nullopt;
   }
-  const std::string folder = make_folder();
-  std::optional<PeerTook> took;
-  {
-    const Simulator running(simulator, folder);
-    Talk talk;
-    if (talk.connect()) {
-      // It loses what comes right after its welcome.
-      std::this_thread::sleep_for(milliseconds{2000});
-      if (write_settings(talk, program.settings)) {
-        const auto started = Clock::now();
-        const auto refused = stream(talk, program.text);
-        if (refused && wait_until_idle(talk)) took = {.wall_s = seconds_since(started), .refused_lines = *refused};
-      }
-    }
-  }
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
-  return took;
+  const ScratchFolder folder;
+  const Simulator running(simulator, folder.path());
+  Talk talk;
+  if (!talk.connect()) return std::nullopt;
+  // It loses what comes right after its welcome.
+  std::this_thread::sleep_for(milliseconds{2000});
+  if (!write_settings(talk, program.settings)) return std::nullopt;
+  const auto started = Clock::now();
+  const auto refused = stream(talk, program.text);
+  if (!refused || !wait_until_idle(talk)) return std::nullopt;
+  return PeerTook{.wall_s = seconds_since(started), .refused_lines = *refused};
 }
 
 }  // namespace kerf::bench

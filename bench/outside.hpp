@@ -1,35 +1,22 @@
 #pragma once
-// Measuring other processes: `kerf` itself, and the stock grblHAL simulator.
+// Measuring other processes: what `kerf` is given, and the stock grblHAL simulator.
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "child_process.hpp"
 #include "programs.hpp"
 
 namespace kerf::bench {
-
-/// What a process took.
-struct ProcessTook {
-  double wall_s = 0;
-  double cpu_s = 0;
-  double peak_mb = 0;
-};
-
-/// Runs a program with its output thrown away; nothing if it cannot be run or ends with a status other than 0.
-[[nodiscard]] std::optional<ProcessTook> run_process(const std::vector<std::string>& words);
 
 /// The programs as files for as long as this lives; their names are put before those in `files`.
 class ScratchFiles {
  public:
   ScratchFiles(const std::vector<BenchProgram>& programs, std::vector<std::string>& files);
-  ~ScratchFiles();
-  ScratchFiles(const ScratchFiles&) = delete;
-  ScratchFiles& operator=(const ScratchFiles&) = delete;
 
  private:
-  std::string folder_;
-  std::vector<std::string> written_;
+  ScratchFolder folder_;
 };
 
 /// The first `lines` lines of a program.
