@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "common/base/text.hpp"
 #include "common/gcode/commands.hpp"
@@ -33,7 +34,8 @@ std::optional<vocabulary::Travel> travel_of_axis(std::size_t axis, const Machine
   const auto length = setting_number(machine.capabilities, kMaxTravel + static_cast<int>(axis));
   if (!length || *length <= 0) return std::nullopt;
   const auto bits = [&](int id) {
-    return static_cast<unsigned>(std::max(0.0, setting_number(machine.capabilities, id).value_or(0)));
+    constexpr double kMost = std::numeric_limits<unsigned>::max();
+    return static_cast<unsigned>(std::clamp(setting_number(machine.capabilities, id).value_or(0), 0.0, kMost));
   };
   const bool has_hard_limits = (bits(kHardLimits) & 1U) != 0;
   const double pull_off = has_hard_limits ? setting_number(machine.capabilities, kHomingPullOff).value_or(0) : 0;

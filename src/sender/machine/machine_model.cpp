@@ -301,9 +301,9 @@ void MachineModel::fold_welcome() {
 }
 
 void MachineModel::fold_setting(std::string_view id, std::string_view value) {
+  if (const auto mask = base::parse_int<std::uint32_t>(base::trim(value)); id == "10" && mask) report_mask_ = mask;
   const auto number = base::parse_decimal(base::trim(value));
   if (!number) return;
-  if (id == "10" && *number >= 0) report_mask_ = static_cast<std::uint32_t>(*number);
   if (id == "13") set_inches(*number != 0);
   if (id == "39") snapshot_.texts_keep_realtime = *number == 0;
 }

@@ -189,6 +189,14 @@ TEST_F(MachineModelTest, InputsThatAreNotReportedAreNotKnown) {
   EXPECT_FALSE(known().inputs);
 }
 
+TEST_F(MachineModelTest, AReportMaskThatCannotBeOneIsNone) {
+  model_.speak(vocabulary::dialect_of(vocabulary::Firmware::GrblHal));
+  hear("$10=0");
+  hear("$10=" + std::string(85, '3'));
+  hear("<Idle|MPos:0.000,0.000,0.000|FS:0,0>");
+  EXPECT_FALSE(known().inputs);
+}
+
 TEST_F(MachineModelTest, KeepsTheLastMessages) {
   for (int number = 0; number < 30; ++number) hear("[MSG:number " + std::to_string(number) + "]");
   hear("[MSG:]");
