@@ -30,22 +30,6 @@ constexpr double kTolerance = 0.0005;
 constexpr double kNearEnd = 2.0;
 constexpr std::size_t kZ = 2;
 
-std::optional<vocabulary::Travel> travel_of_axis(std::size_t axis, const MachineKnowledge& machine) {
-  const auto length = setting_number(machine.capabilities, kMaxTravel + static_cast<int>(axis));
-  if (!length || *length <= 0) return std::nullopt;
-  const auto bits = [&](int id) {
-    constexpr double kMost = std::numeric_limits<unsigned>::max();
-    return static_cast<unsigned>(std::clamp(setting_number(machine.capabilities, id).value_or(0), 0.0, kMost));
-  };
-  const bool has_hard_limits = (bits(kHardLimits) & 1U) != 0;
-  const double pull_off = has_hard_limits ? setting_number(machine.capabilities, kHomingPullOff).value_or(0) : 0;
-  return travel_of(vocabulary::travel_rule_of(machine.dialect.firmware),
-                   {.length_mm = static_cast<float>(*length),
-                    .homes_to_minus = ((bits(kHomingDirection) >> axis) & 1U) != 0,
-                    .pull_off_mm = static_cast<float>(pull_off),
-                    .zero_at_switch = ((bits(kHoming) >> kOriginZeroBit) & 1U) != 0});
-}
-
 double excess_of(double target, const vocabulary::Travel& travel) {
   if (target < static_cast<double>(travel.min_mm) - kTolerance) return target - static_cast<double>(travel.min_mm);
   if (target > static_cast<double>(travel.max_mm) + kTolerance) return target - static_cast<double>(travel.max_mm);
@@ -110,6 +94,23 @@ void for_each_command(std::string_view line, const Visit& visit) {
 
 }  // namespace
 
+std::optional<vocabulary::Travel> travel_of_axis(std::size_t axis, const Capabilities& capabilities,
+                                                 const vocabulary::Dialect& dialect) {
+  const auto length = setting_number(capabilities, kMaxTravel + static_cast<int>(axis));
+  if (!length || *length <= 0) return std::nullopt;
+  const auto bits = [&](int id) {
+    constexpr double kMost = std::numeric_limits<unsigned>::max();
+    return static_cast<unsigned>(std::clamp(setting_number(capabilities, id).value_or(0), 0.0, kMost));
+  };
+  const bool has_hard_limits = (bits(kHardLimits) & 1U) != 0;
+  const double pull_off = has_hard_limits ? setting_number(capabilities, kHomingPullOff).value_or(0) : 0;
+  return travel_of(vocabulary::travel_rule_of(dialect.firmware),
+                   {.length_mm = static_cast<float>(*length),
+                    .homes_to_minus = ((bits(kHomingDirection) >> axis) & 1U) != 0,
+                    .pull_off_mm = static_cast<float>(pull_off),
+                    .zero_at_switch = ((bits(kHoming) >> kOriginZeroBit) & 1U) != 0});
+}
+
 std::string short_number(double value) {
   std::string text = base::to_fixed(std::abs(value) < kTolerance ? 0.0 : value, 3);
   while (text.ends_with('0')) text.pop_back();
@@ -129,7 +130,7 @@ std::optional<Excess> worst_excess(const std::vector<std::vector<double>>& targe
   std::optional<Excess> worst;
   for (const auto& target : targets_mm) {
     for (std::size_t axis = 0; axis < std::min(target.size(), vocabulary::kMaxAxes); ++axis) {
-      const auto travel = travel_of_axis(axis, machine);
+      const auto travel = travel_of_axis(axis, machine.capabilities, machine.dialect);
       if (!travel) continue;
       const double excess = excess_of(target[axis], *travel);
       if (std::abs(excess) <= (worst ? std::abs(worst->excess_mm) : 0)) continue;
@@ -154,7 +155,7 @@ std::vector<std::string> nearness_to_ends(const Snapshot& snapshot, const Machin
   std::vector<std::string> sentences;
   if (!snapshot.machine_position_mm) return sentences;
   for (std::size_t axis = 0; axis < std::min(snapshot.machine_position_mm->size(), vocabulary::kMaxAxes); ++axis) {
-    const auto travel = travel_of_axis(axis, machine);
+    const auto travel = travel_of_axis(axis, machine.capabilities, machine.dialect);
     if (!travel) continue;
     const double at = (*snapshot.machine_position_mm)[axis];
     const double to_min = at - static_cast<double>(travel->min_mm);

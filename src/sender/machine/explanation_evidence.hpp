@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/vocabulary/travel.hpp"
 #include "sender/machine/explanation.hpp"
 
 namespace kerf::machine {
@@ -15,6 +16,10 @@ namespace kerf::machine {
 
 /// Value of a numbered setting, where `$$` told it.
 [[nodiscard]] std::optional<double> setting_number(const Capabilities& capabilities, int id);
+
+/// Where an axis may go once it is homed; empty where the settings do not tell.
+[[nodiscard]] std::optional<vocabulary::Travel> travel_of_axis(std::size_t axis, const Capabilities& capabilities,
+                                                               const vocabulary::Dialect& dialect);
 
 /// How far a target lies outside of the travel of an axis.
 struct Excess {
