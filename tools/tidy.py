@@ -77,6 +77,8 @@ IMPURE_HEADERS = {
     "barrier", "fstream", "iostream", "istream", "ostream", "filesystem", "cstdio", "csignal", "csetjmp", "ctime",
     "coroutine", "locale", "clocale", "regex", "stacktrace", "syncstream", "execution", "print",
 }
+# Foreign headers that one file of the core includes, without linking anything.
+FOREIGN_IN_CORE = {"xxhash.h": "src/common/base/content_hash.cpp"}
 TEST_LIBRARIES = ("gtest/", "gmock/", "rapidcheck", "rapidcheck/")
 
 # What the core may not call or write; `::now(` in io/ is where real time enters.
@@ -187,7 +189,7 @@ def advice_on_foreign(file: SourceFile, target: str) -> str | None:
         return None
     if not in_core(file):
         return None
-    if target.startswith(("boost/describe", "boost/mp11")):
+    if target.startswith(("boost/describe", "boost/mp11")) or FOREIGN_IN_CORE.get(target) == file.path:
         return None
     if target in IMPURE_HEADERS:
         return f"<{target}> belongs to io/ and apps/: the core has no threads, clocks, files or streams"

@@ -63,9 +63,8 @@ std::string supply(session::ProgramLoaded& loaded, const std::string& supplied) 
   const std::string path = supplied.empty() ? loaded.path : supplied;
   auto text = io::read_text_file(path);
   if (!text) return io::explain(text.error(), path) + " The log needs this program; name it with --program.";
-  // As Program::load() does before it hashes nothing but the text that counts.
   const auto program = job::Program::load(loaded.name, *text);
-  if (!program || session::hash_of((*program)->text()) != loaded.hash) {
+  if (!program || (*program)->hash() != loaded.hash) {
     return fmt::format("{} is not the program that was sent ({} bytes, hash {}): find it and name it with --program.",
                        path, loaded.size_bytes, loaded.hash);
   }

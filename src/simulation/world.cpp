@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <iterator>
 #include <utility>
+#include <variant>
 
 #include "common/base/text.hpp"
 #include "firmware/personality.hpp"
@@ -50,10 +52,13 @@ World::World(const WorldOptions& options)
   }
   now_ = opened_at;
   rig_.advance_to(now_);
-  if (options.keeps_wire_log) {
-    session::append_line(wire_log_,
-                         {.at = now_, .what = session::LogHeader{.machine = "virtual", .options = options.session}});
-  }
+  begin_wire_log();
+}
+
+void World::begin_wire_log() {
+  if (!options_.keeps_wire_log) return;
+  session::append_line(wire_log_,
+                       {.at = now_, .what = session::LogHeader{.machine = "virtual", .options = options_.session}});
 }
 
 void World::open() {
@@ -78,6 +83,17 @@ void World::cut_link() {
   to_controller_.cut();
   from_controller_.cut();
   session_.on_closed(now_, session::LinkLoss::Unplugged);
+  settle();
+}
+
+void World::kill_sender(Duration unwritten) {
+  linked_ = false;
+  watch_.on_link_changed();
+  from_controller_.cut();
+  session_ = session::RecordedSession(options_.session);
+  journal_.lose_since(now_ - unwritten);
+  if (options_.keeps_wire_log) earlier_wire_logs_.push_back(std::exchange(wire_log_, {}));
+  begin_wire_log();
   settle();
 }
 
@@ -132,6 +148,7 @@ void World::settle() {
   watch_.look(now_, rig_, session_.job() && !job::is_final(session_.job()->phase));
   auto out = session_.take_outbox();
   keep_records();
+  journal_.append(std::move(out.journal));
   watch_.on_outbox(now_, out);
   if (linked_) {
     to_controller_.send(now_, out.realtime);
@@ -224,7 +241,17 @@ std::optional<job::JobState> run_job(World& world, std::shared_ptr<const job::Pr
   if (!world.run_until(found_or_failed, kConnectLimit) || world.session().phase() != SessionPhase::Ready) {
     return std::nullopt;
   }
+  const std::size_t told = world.events().size();
   world.submit(session::StartJob{std::move(program)});
+  // Behind lines by hand it begins a little later.
+  const auto begun_or_refused = [told](const World& running) {
+    return std::any_of(running.events().begin() + static_cast<std::ptrdiff_t>(told), running.events().end(),
+                       [](const session::Event& event) {
+                         return std::holds_alternative<session::JobStarted>(event) ||
+                                std::holds_alternative<session::CommandRefused>(event);
+                       });
+  };
+  static_cast<void>(world.run_until(begun_or_refused, kConnectLimit));
   if (!world.session().job()) return std::nullopt;
   const auto over = [](const World& running) { return job::is_final(running.session().job()->phase); };
   static_cast<void>(world.run_until(over, limit));

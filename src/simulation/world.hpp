@@ -1,6 +1,7 @@
 #pragma once
 // Both sides of the wire on one virtual clock.
 
+#include <chrono>
 #include <concepts>
 #include <cstdint>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "sender/session/recorded_session.hpp"
 #include "sender/session/replay.hpp"
 #include "simulation/line_watch.hpp"
+#include "simulation/memory_journal.hpp"
 #include "simulation/wire.hpp"
 
 namespace kerf::simulation {
@@ -62,6 +64,9 @@ class World {
   void open();
   /// The link is gone, with everything on it.
   void cut_link();
+  /// Kerf is killed, as by `kill -9`: what it had given to the wire still arrives, and what it told its journal less
+  /// than `unwritten` ago is lost. The next open() is that of a new process.
+  void kill_sender(Duration unwritten = std::chrono::milliseconds{50});
   void submit(const session::Command& command);
   void touch(const firmware::WorkcellEvent& event);
   /// Does what a line of a script says, now: `drop to next 3`, `link cut`, `reboot`. False if it is none.
@@ -102,6 +107,10 @@ class World {
   [[nodiscard]] std::string transcript_text() const;
   /// The connection as a wire log has it: one record a line.
   [[nodiscard]] const std::string& wire_log() const { return wire_log_; }
+  /// Those of the senders that were killed.
+  [[nodiscard]] const std::vector<std::string>& earlier_wire_logs() const { return earlier_wire_logs_; }
+  /// What stands in the journal.
+  [[nodiscard]] const MemoryJournal& journal() const { return journal_; }
   /// Whether the sender kept its promise: no line to a machine in motion that it did not start.
   [[nodiscard]] const LineWatch& line_watch() const { return watch_; }
   /// Most bytes that were ever unanswered at once.
@@ -115,6 +124,7 @@ class World {
   void keep_log();
   void record(Direction direction, const std::string& bytes);
   void keep_records();
+  void begin_wire_log();
 
   WorldOptions options_;
   Instant now_{};
@@ -128,6 +138,8 @@ class World {
   std::vector<firmware::RigRecord> log_;
   std::vector<TranscriptEntry> transcript_;
   std::string wire_log_;
+  std::vector<std::string> earlier_wire_logs_;
+  MemoryJournal journal_;
   std::size_t most_in_flight_ = 0;
 };
 

@@ -25,10 +25,16 @@ class World : public simulation::World {
   using simulation::World::World;
   ~World() {
     for (const std::string& promise : line_watch().broken()) ADD_FAILURE() << promise;
-    if (const auto stop = session::replay_text(wire_log())) ADD_FAILURE() << "Replay: " << session::sentence_of(*stop);
+    for (const std::string& log : earlier_wire_logs()) expect_replay_of(log);
+    expect_replay_of(wire_log());
   }
   World(const World&) = delete;
   World& operator=(const World&) = delete;
+
+ private:
+  static void expect_replay_of(const std::string& log) {
+    if (const auto stop = session::replay_text(log)) ADD_FAILURE() << "Replay: " << session::sentence_of(*stop);
+  }
 };
 
 inline constexpr std::array kFirmwares{vocabulary::Firmware::Grbl, vocabulary::Firmware::Rabbit,

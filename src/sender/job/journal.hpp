@@ -159,9 +159,10 @@ BOOST_DESCRIBE_STRUCT(JobClosed, (), (state))
 
 /// One entry. `job` counts the jobs of one session from 1; the store gives each a number of its own.
 struct JournalRecord {
+  using What = std::variant<JobBegun, JobAdvanced, JobNoted, JobClosed>;
   Instant at{};
   std::uint32_t job = 0;
-  std::variant<JobBegun, JobAdvanced, JobNoted, JobClosed> what;
+  What what;
   bool operator==(const JournalRecord&) const = default;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/base/content_hash.hpp"
 #include "common/base/text.hpp"
 #include "sender/job/wire_form.hpp"
 
@@ -53,6 +54,7 @@ std::expected<std::shared_ptr<const Program>, ProgramFault> Program::load(std::s
   std::shared_ptr<Program> program{new Program};
   program->name_ = std::move(name);
   program->owner_ = std::move(owner);
+  program->hash_ = base::content_hash(text);
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   if (text.ends_with(kDosEndOfFile)) text.remove_suffix(1);
   program->text_ = text;

@@ -61,6 +61,8 @@ class Program {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::string_view text() const { return text_; }
   [[nodiscard]] std::size_t size_bytes() const { return text_.size(); }
+  /// base::content_hash() of the file, every byte of it: what recognises it later.
+  [[nodiscard]] const std::string& hash() const { return hash_; }
   [[nodiscard]] std::uint32_t line_count() const { return line_count_; }
 
   /// The line that begins at `offset_bytes`, numbered `number`; empty at the end of the text.
@@ -83,6 +85,7 @@ class Program {
   std::string name_;
   std::shared_ptr<const void> owner_;
   std::string_view text_;
+  std::string hash_;
   std::uint32_t line_count_ = 0;
   /// Offset of every kIndexStep-th line: a file of a gigabyte must not cost an index of its own size.
   std::vector<std::size_t> index_;

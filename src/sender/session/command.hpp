@@ -12,6 +12,7 @@
 
 #include <boost/describe.hpp>
 
+#include "sender/job/journal.hpp"
 #include "sender/job/program.hpp"
 #include "sender/job/timeline.hpp"
 #include "sender/machine/settings_plan.hpp"
@@ -19,10 +20,13 @@
 namespace kerf::session {
 
 /// Streams a program. Needs a machine that is identified, at rest in Idle or Check, and no job under way. With a
-/// timeline its progress is told by the rehearsed time.
+/// timeline its progress is told by the rehearsed time. Begins when modes and offsets are known to be those before its
+/// first line: after lines by hand the controller is asked for them first.
 struct StartJob {
   std::shared_ptr<const job::Program> program;
   std::shared_ptr<const job::Timeline> timeline{};
+  /// For the journal.
+  job::JobOrigin origin{};
 };
 
 /// Feed hold: decelerate and stand still, position kept. Works in every state.

@@ -167,6 +167,7 @@ class Conversation {
   std::string sent;
   std::vector<std::string> lines_sent;
   std::vector<Event> events;
+  std::vector<job::JournalRecord> journal;
 
  private:
   void keep_records() {
@@ -176,6 +177,7 @@ class Conversation {
     keep_records();
     for (auto out = session.take_outbox(); !out.empty(); out = session.take_outbox()) {
       events.insert(events.end(), out.events.begin(), out.events.end());
+      journal.insert(journal.end(), out.journal.begin(), out.journal.end());
       sent += out.realtime + out.lines;
       std::string heard;
       for (const char byte : out.realtime) heard += replies.reply_to_byte(byte);

@@ -48,7 +48,7 @@ struct ProgramLoaded {
   std::string name;
   std::string path{};  ///< where the file was, for a text that is not in the log
   std::uint64_t size_bytes = 0;
-  std::string hash{};  ///< hash_of() the text as it was sent
+  std::string hash{};  ///< Program::hash()
   std::string text{};
 };
 
@@ -82,8 +82,5 @@ struct Record {
 
 /// Larger programs are not copied into a log.
 inline constexpr std::size_t kMostEmbeddedBytes = std::size_t{4} << 20U;
-
-/// 64-bit FNV-1a of a text in hexadecimal: tells one file from another, but is no proof against forgery.
-[[nodiscard]] std::string hash_of(std::string_view text);
 
 }  // namespace kerf::session

@@ -46,7 +46,7 @@ TEST(RecordText, EveryKindComesBack) {
       LinkOpened{},
       BytesReceived{"\xFF\x18?"},
       BytesSent{.realtime = "\x85", .lines = "G1X1\n"},
-      ProgramLoaded{.name = "a.nc", .path = "/a.nc", .size_bytes = 3, .hash = hash_of("G0\n"), .text = "G0\n"},
+      ProgramLoaded{.name = "a.nc", .path = "/a.nc", .size_bytes = 3, .hash = "99aa06d3014798d8", .text = "G0\n"},
       CommandGiven{SendRealtime{0x18}},
       TimePassed{},
       LinkGone{LinkLoss::TimedOut}};

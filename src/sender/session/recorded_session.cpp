@@ -1,5 +1,6 @@
 #include "sender/session/recorded_session.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <type_traits>
 #include <utility>
@@ -50,6 +51,7 @@ void RecordedSession::on_bytes(Instant now, std::string_view bytes) {
 void RecordedSession::on_closed(Instant now, LinkLoss loss) {
   if (auto held = received_mask_.finish(); !held.empty()) note(now, BytesReceived{std::move(held)});
   note(now, LinkGone{loss});
+  journal_.on_link_closed(now, loss);
   Session::on_closed(now, loss);
   waiting_.realtime.clear();
   waiting_.lines.clear();
@@ -60,8 +62,11 @@ void RecordedSession::submit(Instant now, const Command& command) {
   if (const auto* start = std::get_if<StartJob>(&command)) {
     note_program(now, *start);
     note(now, CommandGiven{StartJob{}});
+    journal_.on_command(now, command);
   } else {
-    note(now, CommandGiven{masked(command, mask_)});
+    Command given = masked(command, mask_);
+    journal_.on_command(now, given);
+    note(now, CommandGiven{std::move(given)});
   }
   Session::submit(now, command);
   settle(now);
@@ -77,7 +82,7 @@ void RecordedSession::note_program(Instant now, const StartJob& start) {
   if (start.program == nullptr || start.program == program_) return;
   program_ = start.program;
   ProgramLoaded loaded{.name = program_->name(), .size_bytes = program_->size_bytes()};
-  loaded.hash = hash_of(program_->text());
+  loaded.hash = program_->hash();
   if (program_->size_bytes() <= kMostEmbeddedBytes) loaded.text = mask_.masked_text(program_->text());
   note(now, std::move(loaded));
 }
@@ -88,10 +93,16 @@ void RecordedSession::settle(Instant now) {
     note(now, BytesSent{.realtime = out.realtime, .lines = mask_.masked_text(out.lines)});
   }
   for (Event& event : out.events) hide_passwords(event, mask_.secrets());
+  journal_.on_events(now, out.events, *this, mask_.secrets());
+  for (job::JournalRecord& record : journal_.take_records()) waiting_.journal.push_back(std::move(record));
   waiting_.realtime += out.realtime;
   waiting_.lines += out.lines;
   waiting_.events.insert(waiting_.events.end(), std::make_move_iterator(out.events.begin()),
                          std::make_move_iterator(out.events.end()));
+}
+
+Instant RecordedSession::next_deadline() const {
+  return std::min(Session::next_deadline(), journal_.next_deadline());
 }
 
 Outbox RecordedSession::take_outbox() {

@@ -1,11 +1,13 @@
 #pragma once
-// A session that writes down what goes into it and what comes out: the flight recorder.
+// A session that writes down what goes into it and what comes out: the flight recorder. And what happens to its jobs:
+// the journal.
 
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sender/session/job_recorder.hpp"
 #include "sender/session/password_mask.hpp"
 #include "sender/session/record.hpp"
 #include "sender/session/session.hpp"
@@ -23,6 +25,8 @@ class RecordedSession : public Session {
   void on_closed(Instant now, LinkLoss loss);
   void submit(Instant now, const Command& command);
   void advance_to(Instant now);
+  [[nodiscard]] Instant next_deadline() const;
+  /// With the records of the journal.
   [[nodiscard]] Outbox take_outbox();
 
   /// What happened since the last call.
@@ -43,6 +47,7 @@ class RecordedSession : public Session {
   /// The program in the log; another one is written down before its StartJob.
   std::shared_ptr<const job::Program> program_;
   std::vector<Record> records_;
+  JobRecorder journal_;
 };
 
 }  // namespace kerf::session

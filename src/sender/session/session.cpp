@@ -233,6 +233,7 @@ void Session::settle_everything(Instant now) {
   // First what the job says: after a refusal not one line more may leave.
   follow_job(now);
   follow_settings(now);
+  begin_waiting_job(now);
   refresh(now);
   if (outbox_.realtime.find_first_of("~\x81") != std::string::npos) gate_.on_activity(now);
   pump(now);
@@ -338,7 +339,7 @@ Instant Session::next_deadline() const {
   if (changes_settings()) deadline = std::min(deadline, settings_change_->next_deadline());
   const bool is_storing = changes_settings() && settings_change_->is_storing();
   if (is_ready() && !is_storing) deadline = std::min({deadline, poller_.next_deadline(), refresh_.next_deadline()});
-  return std::min(deadline, pendant_.next_deadline());
+  return std::min({deadline, pendant_.next_deadline(), start_until_});
 }
 
 Outbox Session::take_outbox() {

@@ -15,6 +15,7 @@
 #include "common/protocol/message_reader.hpp"
 #include "sender/job/job.hpp"
 #include "sender/job/job_state.hpp"
+#include "sender/job/journal.hpp"
 #include "sender/machine/capabilities.hpp"
 #include "sender/machine/handshake.hpp"
 #include "sender/machine/machine_model.hpp"
@@ -59,7 +60,9 @@ struct Outbox {
   std::string realtime;
   std::string lines;
   std::vector<Event> events;
-  [[nodiscard]] bool empty() const { return realtime.empty() && lines.empty() && events.empty(); }
+  /// For the journal, in order. Only a RecordedSession makes them.
+  std::vector<job::JournalRecord> journal;
+  [[nodiscard]] bool empty() const { return realtime.empty() && lines.empty() && events.empty() && journal.empty(); }
 };
 
 /// One owner calls in, then empties the outbox. Not thread-safe. Never throws on anything that a wire or an operator
@@ -84,7 +87,7 @@ class Session {
   [[nodiscard]] LinkHealth link_health(Instant now) const;
   /// Why the machine is in alarm; empty while it is not.
   [[nodiscard]] std::optional<machine::Explanation> alarm_explanation() const;
-  /// The job under way, or the last one; empty before the first.
+  /// The job under way, or the last one; empty before the first, and while the next one waits for its beginning.
   [[nodiscard]] const std::optional<job::JobState>& job() const { return job_state_; }
   /// What was not as at the last connection (RecallSettings), for the rest of this one.
   [[nodiscard]] const std::vector<machine::SettingDifference>& settings_drift() const { return settings_drift_; }
@@ -103,6 +106,8 @@ class Session {
   void follow_pendant(Instant now);
 
   void obey(Instant now, const StartJob& command);
+  void begin_job(Instant now, const StartJob& command);
+  void begin_waiting_job(Instant now);
   void obey(Instant now, const HoldJob& command);
   void obey(Instant now, const ResumeJob& command);
   void obey(Instant now, const StopJob& command);
@@ -170,6 +175,9 @@ class Session {
   LineGate gate_;
   std::optional<job::Job> job_;
   std::optional<job::JobState> job_state_;
+  /// Begins when the controller has told what stands before its first line, and is given up at `start_until_`.
+  std::optional<StartJob> waiting_start_;
+  Instant start_until_ = kNever;
   std::optional<SettingsChange> settings_change_;
   /// What the machine had at the last connection, until it was compared.
   std::optional<RecallSettings> recalled_;

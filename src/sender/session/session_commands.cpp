@@ -1,8 +1,11 @@
 // Commands of the operator: whether they can be obeyed, and by whom.
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "common/base/text.hpp"
@@ -19,6 +22,9 @@ namespace {
 using streaming::Purpose;
 using vocabulary::MachineState;
 using vocabulary::Realtime;
+
+/// A line by hand may take its time (a jog), but whoever started a job should not be surprised by it later.
+constexpr Duration kLongestWaitForStart = std::chrono::seconds{5};
 
 }  // namespace
 
@@ -43,7 +49,7 @@ std::size_t Session::longest_line_taken() const {
 std::optional<Refused> Session::why_nothing(Instant now) const {
   if (snapshot().pendant_in_control) return Refused::PendantInControl;
   if (!is_ready()) return Refused::NotIdentified;
-  if (has_job()) return Refused::JobUnderWay;
+  if (has_job() || waiting_start_) return Refused::JobUnderWay;
   if (changes_settings()) return Refused::SettingsUnderWay;
   if (gate_.sees_foreign_motion()) return Refused::ForeignMotion;
   // With a line owed, that line may be the reason: Grbl says nothing while it homes.
@@ -65,8 +71,7 @@ void Session::obey(Instant now, const StartJob& command) {
     refuse(*reason);
     return;
   }
-  const auto& dialect = handshake_.collector().dialect();
-  const auto form = job::wire_form_of(dialect);
+  const auto form = job::wire_form_of(dialect());
   const auto longest = command.program->longest_line(form.keeps_messages);
   if (longest.length > longest_line_taken()) {
     refuse(Refused::LineTooLong, command.program->name() + ", line " + std::to_string(longest.number) + " has " +
@@ -74,10 +79,39 @@ void Session::obey(Instant now, const StartJob& command) {
                                      std::to_string(longest_line_taken()) + ": split it in the CAM program.");
     return;
   }
-  if (dialect.error_latch) streamer_.enqueue(Purpose::ClearLatch, "");
-  incidents_.start_from(snapshot(), capabilities(), dialect);
-  streamer_.feed_from(std::make_unique<ProgramLines>(command.program, form));
-  job_.emplace(now, *command.program, dialect.error_latch, command.timeline);
+  if (streamer_.is_idle() && !snapshot().parser_state_is_old && !snapshot().offsets_are_old) {
+    begin_job(now, command);
+    return;
+  }
+  // Whatever is on its way may change more; the questions come behind it.
+  job_.reset();
+  job_state_.reset();
+  waiting_start_ = command;
+  start_until_ = now + kLongestWaitForStart;
+  streamer_.enqueue(Purpose::Question, "$G");
+  streamer_.enqueue(Purpose::Question, "$#");
+}
+
+void Session::begin_waiting_job(Instant now) {
+  if (!waiting_start_) return;
+  const bool is_late = now >= start_until_;
+  if (is_ready() && !streamer_.is_idle() && !is_late) return;
+  const StartJob command = *std::exchange(waiting_start_, std::nullopt);
+  start_until_ = kNever;
+  if (is_late) streamer_.drop_queued(Purpose::Question);
+  const auto reason = is_late ? std::optional{Refused::NotAnswering} : why_no_job(now);
+  if (reason) {
+    refuse(*reason);
+    return;
+  }
+  begin_job(now, command);
+}
+
+void Session::begin_job(Instant now, const StartJob& command) {
+  if (dialect().error_latch) streamer_.enqueue(Purpose::ClearLatch, "");
+  incidents_.start_from(snapshot(), capabilities(), dialect());
+  streamer_.feed_from(std::make_unique<ProgramLines>(command.program, job::wire_form_of(dialect())));
+  job_.emplace(now, *command.program, dialect().error_latch, command.timeline);
   job_state_ = job_->state();
   tell(JobStarted{command.program->name()});
 }

@@ -1,0 +1,42 @@
+#include "simulation/memory_journal.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace kerf::simulation {
+namespace {
+
+void fold(std::vector<job::JobHistory>& jobs, const job::JournalRecord& record) {
+  jobs.resize(std::max<std::size_t>(jobs.size(), record.job));
+  jobs[record.job - 1].fold(record);
+}
+
+}  // namespace
+
+void MemoryJournal::append(std::vector<job::JournalRecord> records) {
+  for (job::JournalRecord& record : records) {
+    if (std::holds_alternative<job::JobBegun>(record.what)) numbers_[record.job] = ++jobs_;
+    record.job = numbers_.at(record.job);
+    recent_.push_back(std::move(record));
+  }
+  while (!recent_.empty() && recent_.front().at < recent_.back().at - kMostUnwritten) {
+    fold(settled_, recent_.front());
+    recent_.pop_front();
+  }
+}
+
+void MemoryJournal::lose_since(Instant from) {
+  std::erase_if(recent_, [from](const job::JournalRecord& record) { return record.at >= from; });
+  numbers_.clear();
+  jobs_ = static_cast<std::uint32_t>(settled_.size());
+  for (const job::JournalRecord& record : recent_) jobs_ = std::max(jobs_, record.job);
+}
+
+std::vector<job::JobHistory> MemoryJournal::jobs() const {
+  std::vector<job::JobHistory> jobs = settled_;
+  for (const job::JournalRecord& record : recent_) fold(jobs, record);
+  return jobs;
+}
+
+}  // namespace kerf::simulation
