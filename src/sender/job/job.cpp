@@ -15,11 +15,6 @@ using vocabulary::MachineState;
 
 /// A hold that shows no effect is sent again: a byte can get lost.
 constexpr Duration kHoldRepeat = 1s;
-/// A machine that does not come to rest, or does not report, is reset all the same: the operator asked for a stop.
-constexpr Duration kLongestStop = 60s;
-constexpr Duration kLongestSilentStop = 5s;
-/// Reset to welcome takes 10 ms, and 500 ms more behind an alarm (protocol.md 10.1).
-constexpr Duration kWelcomeTimeout = 3s;
 /// Answers that still come after an alarm come soon; lines of a critical alarm get none.
 constexpr Duration kAlarmDrain = 3s;
 constexpr Duration kReportAge = 250ms;
@@ -74,6 +69,7 @@ void Job::end(Instant now, JobPhase phase, std::string reason) {
   update_progress(now);
   state_.reason = std::move(reason);
   deadline_ = kNever;
+  stop_.end();
 }
 
 void Job::end_by_alarm(Instant now) {
@@ -131,12 +127,12 @@ void Job::on_sync_answered(Instant) {
 
 void Job::on_snapshot(Instant now, const machine::Snapshot& snapshot) {
   if (ended()) return;
-  reported_at_ = now;
   moving_ = is_moving(snapshot);
   if (snapshot.overrides) meter_.set_feed_override(now, snapshot.overrides->feed);
   update_progress(now);
   if (state_.phase == JobPhase::Stopping) {
-    follow_stop(now, snapshot);
+    stop_.on_snapshot(now, snapshot);
+    obey_stop();
     return;
   }
   if (snapshot.pendant_in_control) {
@@ -203,15 +199,6 @@ void Job::follow_run(Instant now) {
   if (now - hold_ordered_at_ >= kHoldRepeat) order_hold(now);
 }
 
-void Job::follow_stop(Instant now, const machine::Snapshot& snapshot) {
-  if (waiting_ != Waiting::ForStandstill) return;
-  const bool idle_for_long = snapshot.state == MachineState::Idle && now - stop_asked_at_ >= kHoldRepeat;
-  const bool rests = machine::is_at_rest(snapshot) && now >= deaf_to_hold_until_;
-  // Only a reset ends a homing cycle.
-  if (snapshot.state == MachineState::Home) state_.position_suspect = true;
-  if (rests || idle_for_long || snapshot.state == MachineState::Home) reset_controller(now);
-}
-
 void Job::on_alarm(Instant now, int code, std::string_view meaning) {
   if (ended()) return;
   if (loses_position(code)) state_.position_suspect = true;
@@ -269,16 +256,9 @@ void Job::stop(Instant now) {
   if (ended() || state_.phase == JobPhase::Stopping) return;
   const bool rests = state_.phase == JobPhase::Held;
   stop_feeding();
-  stop_asked_at_ = now;
-  reported_at_ = now;
   enter(now, JobPhase::Stopping);
-  if (rests) {
-    reset_controller(now);
-    return;
-  }
-  waiting_ = Waiting::ForStandstill;
-  order_hold(now);
-  deadline_ = now + kHoldRepeat;
+  stop_.begin(now, rests, deaf_to_hold_until_);
+  obey_stop();
 }
 
 void Job::abort(Instant now) {
@@ -286,32 +266,27 @@ void Job::abort(Instant now) {
   if (moving_ && state_.phase != JobPhase::Held) state_.position_suspect = true;
   stop_feeding();
   enter(now, JobPhase::Stopping);
-  reset_controller(now);
+  stop_.reset_now(now);
+  obey_stop();
 }
 
-void Job::reset_controller(Instant now) {
-  order(JobOrder::SoftReset);
-  waiting_ = Waiting::ForWelcome;
-  deadline_ = now + kWelcomeTimeout;
+void Job::obey_stop() {
+  if (stop_.position_suspect()) state_.position_suspect = true;
+  for (const StopOrder what : stop_.take_orders()) {
+    order(what == StopOrder::FeedHold ? JobOrder::FeedHold : JobOrder::SoftReset);
+  }
 }
 
 void Job::advance_to(Instant now) {
+  stop_.advance_to(now);
+  obey_stop();
+  if (stop_.is_unconfirmed()) {
+    end(now, JobPhase::Stopped, "The controller did not confirm the reset: look at the machine before anything else.");
+    return;
+  }
   if (now < deadline_) return;
   deadline_ = kNever;
-  if (waiting_ == Waiting::ForWelcome) {
-    state_.position_suspect = true;
-    end(now, JobPhase::Stopped, "The controller did not confirm the reset: look at the machine before anything else.");
-  } else if (waiting_ == Waiting::ForStandstill && state_.phase == JobPhase::Stopping) {
-    if (now - stop_asked_at_ >= kLongestStop || now - reported_at_ >= kLongestSilentStop) {
-      state_.position_suspect = true;
-      reset_controller(now);
-    } else {
-      order_hold(now);
-      deadline_ = now + kHoldRepeat;
-    }
-  } else if (state_.alarm_code) {
-    end_by_alarm(now);
-  }
+  if (state_.alarm_code && state_.phase != JobPhase::Stopping) end_by_alarm(now);
 }
 
 std::vector<JobOrder> Job::take_orders() {

@@ -1,6 +1,7 @@
 #pragma once
 // One job from its first line to its end: a state machine that is told what happens and says what to do.
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "common/base/time.hpp"
 #include "sender/job/job_state.hpp"
 #include "sender/job/program.hpp"
+#include "sender/job/stop_sequence.hpp"
 #include "sender/job/timeline.hpp"
 #include "sender/machine/snapshot.hpp"
 
@@ -64,7 +66,7 @@ class Job {
   void abort(Instant now);
 
   void advance_to(Instant now);
-  [[nodiscard]] Instant next_deadline() const { return deadline_; }
+  [[nodiscard]] Instant next_deadline() const { return std::min(deadline_, stop_.next_deadline()); }
   [[nodiscard]] std::vector<JobOrder> take_orders();
 
   /// A cycle start would be obeyed.
@@ -77,7 +79,7 @@ class Job {
 
  private:
   /// What the job waits for beyond its phase.
-  enum class Waiting { ForLines, ForSync, ForRest, ForStandstill, ForWelcome };
+  enum class Waiting { ForLines, ForSync, ForRest };
 
   void order(JobOrder what) { orders_.push_back(what); }
   void stop_feeding();
@@ -85,14 +87,14 @@ class Job {
   void order_hold(Instant now);
   void end(Instant now, JobPhase phase, std::string reason);
   void end_by_alarm(Instant now);
-  void reset_controller(Instant now);
+  void obey_stop();
   void follow_motion(Instant now, const machine::Snapshot& snapshot);
   void follow_run(Instant now);
-  void follow_stop(Instant now, const machine::Snapshot& snapshot);
   [[nodiscard]] bool ended() const { return is_final(state_.phase); }
 
   JobState state_;
   ProgressMeter meter_;
+  StopSequence stop_;
   bool has_error_latch_ = false;
   Waiting waiting_ = Waiting::ForLines;
   bool feeding_ = true;
@@ -102,8 +104,6 @@ class Job {
   bool moving_ = false;
   Instant deadline_ = kNever;
   Instant hold_ordered_at_{};
-  Instant stop_asked_at_{};
-  Instant reported_at_{};
   /// Reports about the hold before this instant may have been on their way when the cycle start went out.
   Instant deaf_to_hold_until_{};
   std::string alarm_meaning_;

@@ -29,6 +29,8 @@ class LineGate {
 
   [[nodiscard]] GateVerdict verdict(Instant now) const;
   [[nodiscard]] bool sees_foreign_motion() const { return moves_ && !is_own_; }
+  /// Kerf started something that no report has yet shown to be over.
+  [[nodiscard]] bool may_be_moving() const { return is_own_; }
   /// Foreign motion began: true once for each.
   [[nodiscard]] bool take_notice();
 

@@ -72,6 +72,7 @@ void Session::on_closed(Instant now, LinkLoss) {
   refresh_.forget();
   pendant_.forget();
   reset_pending_until_.reset();
+  stop_.end();
   handshake_.on_closed(now);
   if (has_job()) job_->on_link_closed(now);
   if (changes_settings()) settings_change_->interrupt("the link was closed");
@@ -117,6 +118,7 @@ void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
 void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code) {
   if (!line) return;
   gate_.on_activity(now);
+  on_jog_answered(*line);
   if (error_code == 0) {
     model_.on_line_accepted(line->text);
     incidents_.on_accepted(*line);
@@ -180,6 +182,7 @@ void Session::on_report(Instant now, MachineState before) {
     tell(ControllerBusy{.state = snapshot().state, .pendant = false, .sentence = machine::busy_sentence(snapshot())});
   }
   if (changes_settings()) settings_change_->on_report(now, snapshot());
+  stop_.on_snapshot(now, snapshot());
   if (!has_job()) return;
   job_->on_snapshot(now, snapshot());
   if (has_job()) tell(JobProgressed{job_->state()});
@@ -190,6 +193,8 @@ void Session::on_welcome(Instant now) {
   reset_pending_until_.reset();
   streamer_.pause(false);
   strike_out();
+  stop_.end();
+  cancels_owed_jogs_ = false;
   if (!asked) model_.on_power_doubt();
   incidents_.forget();
   if (has_job()) job_->on_welcome(now);
@@ -232,6 +237,7 @@ void Session::settle_everything(Instant now) {
   follow_handshake(now);
   // First what the job says: after a refusal not one line more may leave.
   follow_job(now);
+  follow_stop(now);
   follow_settings(now);
   begin_waiting_job(now);
   refresh(now);
@@ -322,6 +328,7 @@ void Session::advance_to(Instant now) {
   if (!open_) return;
   handshake_.advance_to(now, snapshot());
   if (has_job()) job_->advance_to(now);
+  stop_.advance_to(now);
   if (changes_settings()) settings_change_->advance_to(now);
   if (reset_pending_until_ && now >= *reset_pending_until_) {
     reset_pending_until_.reset();
@@ -334,7 +341,8 @@ void Session::advance_to(Instant now) {
 
 Instant Session::next_deadline() const {
   if (!open_) return kNever;
-  Instant deadline = std::min(handshake_.next_deadline(), reset_pending_until_.value_or(kNever));
+  Instant deadline =
+      std::min({handshake_.next_deadline(), reset_pending_until_.value_or(kNever), stop_.next_deadline()});
   if (has_job()) deadline = std::min(deadline, job_->next_deadline());
   if (changes_settings()) deadline = std::min(deadline, settings_change_->next_deadline());
   const bool is_storing = changes_settings() && settings_change_->is_storing();

@@ -16,6 +16,7 @@
 #include "sender/job/job.hpp"
 #include "sender/job/job_state.hpp"
 #include "sender/job/journal.hpp"
+#include "sender/job/stop_sequence.hpp"
 #include "sender/machine/capabilities.hpp"
 #include "sender/machine/handshake.hpp"
 #include "sender/machine/machine_model.hpp"
@@ -134,6 +135,9 @@ class Session {
   void follow_job(Instant now);
   void obey_handshake(Instant now, const machine::HandshakeOrder& order);
   void obey_job(Instant now, job::JobOrder order);
+  void follow_stop(Instant now);
+  void cancel_jog();
+  void on_jog_answered(const streaming::OwedLine& line);
   void follow_settings(Instant now);
   void on_operator_line_accepted(Instant now, std::string_view text);
   void tell_drift();
@@ -153,6 +157,8 @@ class Session {
   void tell(Event event) { outbox_.events.push_back(std::move(event)); }
   void send_byte(vocabulary::Realtime byte);
   [[nodiscard]] const vocabulary::Dialect& dialect() const { return handshake_.collector().dialect(); }
+  /// A jog is under way, or may be: the next report will tell.
+  [[nodiscard]] bool may_be_jogging() const;
   [[nodiscard]] bool is_ready() const { return phase() == SessionPhase::Ready; }
   [[nodiscard]] bool changes_settings() const { return settings_change_ && !settings_change_->is_over(); }
   [[nodiscard]] bool has_job() const { return job_ && !job::is_final(job_->state().phase); }
@@ -178,6 +184,11 @@ class Session {
   /// Begins when the controller has told what stands before its first line, and is given up at `start_until_`.
   std::optional<StartJob> waiting_start_;
   Instant start_until_ = kNever;
+  /// Of motion that is no job's.
+  job::StopSequence stop_;
+  bool last_line_jogs_ = false;
+  /// A jog was cancelled while others were owed.
+  bool cancels_owed_jogs_ = false;
   std::optional<SettingsChange> settings_change_;
   /// What the machine had at the last connection, until it was compared.
   std::optional<RecallSettings> recalled_;

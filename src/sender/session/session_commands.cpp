@@ -116,42 +116,6 @@ void Session::begin_job(Instant now, const StartJob& command) {
   tell(JobStarted{command.program->name()});
 }
 
-void Session::obey(Instant now, const HoldJob&) {
-  if (has_job())
-    job_->hold(now);
-  else
-    send_byte(Realtime::FeedHold);
-}
-
-void Session::obey(Instant now, const ResumeJob&) {
-  if (snapshot().pendant_in_control) {
-    refuse(Refused::PendantInControl);
-    return;
-  }
-  if (!machine::can_resume(snapshot()) || (has_job() && !job_->can_resume())) {
-    refuse(Refused::NotAtRest);
-    return;
-  }
-  if (has_job())
-    job_->resume(now);
-  else
-    send_byte(Realtime::CycleStart);
-}
-
-void Session::obey(Instant now, const StopJob&) {
-  if (has_job())
-    job_->stop(now);
-  else
-    refuse(Refused::NoJob);
-}
-
-void Session::obey(Instant now, const AbortJob&) {
-  if (has_job())
-    job_->abort(now);
-  else
-    obey(now, SoftReset{});
-}
-
 std::optional<Refused> Session::why_no_line(Instant now, std::string_view text) const {
   if (const auto reason = why_nothing(now)) return reason;
   if (snapshot().reset_required) return Refused::MachineInAlarm;
@@ -172,6 +136,7 @@ void Session::obey(Instant now, const SendLine& command) {
     refuse(*reason, is_eaten ? why_text_is_eaten(command.text).value_or("") : std::string{});
     return;
   }
+  last_line_jogs_ = streaming::is_jog(command.text);
   if (streamer_.is_idle() && snapshot().state == MachineState::Idle) {
     incidents_.start_from(snapshot(), capabilities(), dialect());
   }
@@ -188,25 +153,6 @@ void Session::obey(Instant now, const Home&) {
 
 void Session::obey(Instant now, const Jog& command) {
   obey(now, SendLine{"$J=" + command.words});
-}
-
-void Session::obey(Instant, const CancelJog&) {
-  if (has_job()) {
-    refuse(Refused::JobUnderWay);
-    return;
-  }
-  send_byte(Realtime::JogCancel);
-  // grblHAL drops every unread line with it (protocol.md 4.4).
-  if (handshake_.collector().dialect().jog_cancel_flushes_rx) strike_out();
-}
-
-void Session::obey(Instant now, const SoftReset&) {
-  if (has_job()) {
-    job_->abort(now);
-    return;
-  }
-  reset_controller(now);
-  handshake_.on_operator_reset(now);
 }
 
 void Session::obey(Instant now, const SendRealtime& command) {

@@ -34,4 +34,8 @@ bool must_travel_alone(std::string_view text, SoloPolicy policy) {
   return policy == SoloPolicy::StoredWritesToo && writes_stored_offset(text);
 }
 
+bool is_jog(std::string_view text) {
+  return base::starts_with_ignoring_case(base::trim(text), "$J=");
+}
+
 }  // namespace kerf::streaming

@@ -15,4 +15,7 @@ enum class SoloPolicy {
 /// True when `text` must be sent alone: nothing before it unanswered, nothing after it until it is answered.
 [[nodiscard]] bool must_travel_alone(std::string_view text, SoloPolicy policy);
 
+/// `$J=…`, however it is written.
+[[nodiscard]] bool is_jog(std::string_view text);
+
 }  // namespace kerf::streaming
