@@ -139,7 +139,7 @@ class Check {
   }
 
   std::optional<ResumeRefusal> check_travel(const AxisValues& to, std::uint32_t line) const {
-    if (!with_.is_homed) return std::nullopt;
+    if (!plan_.is_homed) return std::nullopt;
     for (std::size_t axis = 0; axis < axes_; ++axis) {
       const auto travel = machine::travel_of_axis(axis, with_.capabilities, with_.dialect);
       if (!travel) continue;

@@ -30,7 +30,6 @@ struct PlanCheck {
   const gcode::Interpreter& present;
   const vocabulary::Dialect& dialect;
   const machine::Capabilities& capabilities;
-  bool is_homed = false;
 };
 
 /// Fills `plan.path`, and says what is wrong with it.

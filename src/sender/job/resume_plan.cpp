@@ -46,6 +46,7 @@ class Planning {
                                  &Planning::make_steps};
     plan_.program = program_.name();
     plan_.executing = facts_.executing;
+    plan_.is_homed = is_homed();
     plan_.warnings = facts_.remarks;
     for (const Stage stage : kStages) {
       if (auto refusal = (this->*stage)()) return std::unexpected{*std::move(refusal)};
@@ -61,6 +62,10 @@ class Planning {
   }
 
   std::optional<ResumeRefusal> check_machine() {
+    if (!facts_.file_hash.empty() && facts_.file_hash != program_.hash()) {
+      return no(ResumeProblem::OtherProgram, 0, "The file is not the one that was being cut: its content has changed.",
+                "Give the original file, or run the new one with --from-line after a look at its lines.");
+    }
     const MachineAtStart& present = facts_.present;
     if (facts_.start.firmware != present.firmware || facts_.start.axes != present.axes) {
       return no(ResumeProblem::OtherMachine, 0, "The machine is not the one that the job was cut on.",
@@ -395,8 +400,7 @@ class Planning {
                               .state = *state_,
                               .present = *present_,
                               .dialect = *start_.dialect,
-                              .capabilities = facts_.capabilities,
-                              .is_homed = is_homed()});
+                              .capabilities = facts_.capabilities});
   }
 
   const Program& program_;

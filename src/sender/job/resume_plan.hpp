@@ -159,6 +159,8 @@ struct ResumePlan {
   std::string from_because{};
   /// Nothing was cut before: the program simply runs from its beginning.
   bool is_from_the_beginning = false;
+  /// Machine coordinates are those of the homing switches, so the travel is known.
+  bool is_homed = false;
   double safe_height_mm = 0;
   /// Nothing was cut above this so far; empty where nothing was cut.
   std::optional<double> highest_cut_mm{};
@@ -175,7 +177,7 @@ struct ResumePlan {
   bool operator==(const ResumePlan&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(ResumePlan, (),
-                      (program, executing, from_line, from_because, is_from_the_beginning, safe_height_mm,
+                      (program, executing, from_line, from_because, is_from_the_beginning, is_homed, safe_height_mm,
                        highest_cut_mm, resume_position_mm, plunge_mm_per_min, spin_up_s, steps, path, warnings,
                        rewritten))
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "common/base/text.hpp"
+#include "sender/job/program_start.hpp"
 #include "sender/session/record_text.hpp"
 
 namespace kerf::session {
@@ -19,31 +20,10 @@ using streaming::Purpose;
 constexpr Duration kBetweenAdvances = std::chrono::milliseconds{40};
 
 job::MachineAtStart machine_at_start(const Session& session, const protocol::Secrets& secrets) {
-  const machine::Capabilities& known = session.capabilities();
-  const machine::Snapshot& now = session.snapshot();
-  job::MachineAtStart machine{.firmware = known.family,
-                              .version = known.version,
-                              .build = known.build,
-                              .user_text = known.user_text,
-                              .axes = known.axes.letters,
-                              .planner_blocks = known.buffers.planner_blocks,
-                              .state = now.state,
-                              .parser_words = now.parser_words,
-                              .modes = now.modes,
-                              .modes_are_current = !now.parser_state_is_old && !now.parser_words.empty(),
-                              .offsets_mm = now.offsets_mm,
-                              .offsets_are_current = !now.offsets_are_old && !now.offsets_mm.empty(),
-                              .work_coordinate_system = now.work_coordinate_system,
-                              .tool = now.tool,
-                              .tool_length = now.tool_length,
-                              .overrides = now.overrides,
-                              .homing = now.homing,
-                              .machine_position_mm = now.machine_position_mm,
-                              .work_offset_mm = now.work_offset_mm};
-  for (const machine::SettingFact& setting : known.settings) {
-    if (!setting.value || secrets.is_secret(setting.id, *setting.value)) continue;
-    machine.settings.push_back({.id = setting.id, .value = *setting.value});
-  }
+  job::MachineAtStart machine = job::present_machine(session.snapshot(), session.capabilities());
+  std::erase_if(machine.settings, [&secrets](const machine::SettingAssignment& setting) {
+    return secrets.is_secret(setting.id, setting.value);
+  });
   return machine;
 }
 
