@@ -110,6 +110,7 @@ struct VerifyOptions {
   std::string machine;      ///< empty: the virtual controller of each talk's personality, in virtual time
   std::string personality;  ///< empty: all of them
   bool verbose = false;
+  io::RecordingOptions recording{};
 };
 [[nodiscard]] ExitStatus verify(const VerifyOptions& options);
 

@@ -29,7 +29,8 @@ class Visitor {
     host_ = std::make_unique<io::SessionHost>(
         loop_, url_, options,
         io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
-                                   .lost = [this](const io::TransportError& error) { fail(io::explain(url_, error)); }},
+                                   .lost = [this](const io::TransportError& error) { fail(io::explain(url_, error)); },
+                                   .noted = [](const std::string& sentence) { complain(sentence); }},
         options_.recording);
     loop_.run();
     return status_.value_or(ExitStatus::NoConnection);

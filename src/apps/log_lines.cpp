@@ -84,6 +84,7 @@ void LogLines::read_what(Instant at, const session::LogHeader& header) {
   std::string text = fmt::format("kerf {} at {}, {}", header.kerf, header.machine, header.began);
   if (header.part > 1) text += fmt::format(", part {}", header.part);
   if (header.listening) text += ", listening only";
+  if (!header.talk.empty()) text += ", the talk " + header.talk;
   add(at, LogDirection::None, "header", std::move(text));
 }
 

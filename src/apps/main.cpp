@@ -45,13 +45,18 @@ constexpr const char* kFooter =
 /// The sub-command that was chosen, ready to run.
 using Chosen = std::function<ExitStatus()>;
 
-/// The options of every command that connects to a machine.
-void add_machine(CLI::App& command, std::string& machine, kerf::io::RecordingOptions& recording) {
-  command.add_option("-m,--machine", machine, kMachineHelp)->type_name("URL")->capture_default_str();
+/// Whether and where a connection is written down.
+void add_recording(CLI::App& command, kerf::io::RecordingOptions& recording) {
   CLI::Option* folder =
       command.add_option("--record", recording.folder, "Keep the log of the connection in this folder")
           ->type_name("FOLDER");
   command.add_flag("!--no-record", recording.records, "Keep no log of the connection")->excludes(folder);
+}
+
+/// The options of every command that connects to a machine.
+void add_machine(CLI::App& command, std::string& machine, kerf::io::RecordingOptions& recording) {
+  command.add_option("-m,--machine", machine, kMachineHelp)->type_name("URL")->capture_default_str();
+  add_recording(command, recording);
 }
 
 void add_run(CLI::App& kerf, Chosen& chosen) {
@@ -298,6 +303,7 @@ void add_verify(CLI::App& kerf, Chosen& chosen) {
       ->type_name("NAME")
       ->excludes(machine);
   command->add_flag("-v,--verbose", options->verbose, "Show every line said and heard");
+  add_recording(*command, options->recording);
   command->footer("\nOn a real machine a talk moves axes and may change settings: take the tool out first.\n");
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::verify(*options); }; });
 }

@@ -13,6 +13,7 @@
 #include "apps/commands.hpp"
 #include "apps/log_lines.hpp"
 #include "apps/output.hpp"
+#include "io/link_recorder.hpp"
 #include "io/session_host.hpp"
 
 namespace kerf::apps {
@@ -44,36 +45,22 @@ class Watcher {
 class Listener {
  public:
   Listener(io::EventLoop& loop, const io::MachineUrl& url, const io::RecordingOptions& recording,
-           io::SessionHost::Callbacks callbacks)
-      : loop_(loop),
-        callbacks_(std::move(callbacks)),
-        log_(loop, recording, {.machine = to_string(url), .listening = true}),
-        transport_(io::open_transport(
-            loop, url,
-            {.opened = [this] { write(session::LinkOpened{}); },
-             .received = [this](std::string_view bytes) { write(session::BytesReceived{stream_.push(bytes, mask_)}); },
-             .lost =
-                 [this](const io::TransportError& error) {
-                   write(session::LinkGone{session::LinkLoss::Error});
-                   callbacks_.lost(error);
-                 }})) {}
+           const io::SessionHost::Callbacks& callbacks)
+      : recorder_(loop, recording, {.machine = to_string(url), .listening = true},
+                  {.recorded = callbacks.recorded, .noted = callbacks.noted}),
+        transport_(io::open_transport(loop, url,
+                                      {.opened = [this] { recorder_.opened(); },
+                                       .received = [this](std::string_view bytes) { recorder_.received(bytes); },
+                                       .lost =
+                                           [this, lost = callbacks.lost](const io::TransportError& error) {
+                                             recorder_.gone(io::loss_of(error.fault));
+                                             lost(error);
+                                           }})) {}
 
-  [[nodiscard]] const std::string& log_path() const { return log_.path(); }
+  [[nodiscard]] const std::string& log_path() const { return recorder_.path(); }
 
  private:
-  template <typename What>
-  void write(What what) {
-    const session::Record record{.at = loop_.now(), .what = std::move(what)};
-    log_.append(record);
-    callbacks_.recorded(record);
-    if (const auto fault = log_.take_fault()) callbacks_.noted(*fault);
-  }
-
-  io::EventLoop& loop_;
-  io::SessionHost::Callbacks callbacks_;
-  io::WireLog log_;
-  session::PasswordMask mask_;
-  session::StreamMask stream_;
+  io::LinkRecorder recorder_;
   std::unique_ptr<io::Transport> transport_;
 };
 

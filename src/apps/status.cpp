@@ -98,6 +98,7 @@ class Watch {
         loop_, url_, options,
         io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
                                    .lost = [this](const io::TransportError& error) { on_lost(error); },
+                                   .noted = [](const std::string& sentence) { complain(sentence); },
                                    .interrupted = [this](const io::TransportError& error) { on_interrupted(error); }},
         recording_);
     loop_.run();

@@ -13,6 +13,7 @@
 #include "apps/output.hpp"
 #include "common/base/text.hpp"
 #include "io/event_loop.hpp"
+#include "io/link_recorder.hpp"
 #include "io/machine_url.hpp"
 #include "io/text_file.hpp"
 #include "io/transport.hpp"
@@ -120,9 +121,11 @@ std::string obstacle(const Talk& talk, const Build& build) {
 /// Holds talks with whatever is behind a URL, one connection a talk, in real time.
 class LiveRunner {
  public:
-  explicit LiveRunner(io::MachineUrl url) : url_(std::move(url)), timer_(loop_) {}
+  LiveRunner(io::MachineUrl url, io::RecordingOptions recording)
+      : url_(std::move(url)), recording_(std::move(recording)), timer_(loop_) {}
 
-  Result run(const Talk& talk) {
+  Result run(const NamedTalk& named) {
+    const Talk& talk = named.talk;
     result_ = {};
     const bool asks_for_build = talk.hardware.axes > 0 || talk.hardware.tools > 0;
     if (asks_for_build && !build_) build_ = ask_for_build();
@@ -131,14 +134,17 @@ class LiveRunner {
     simulation::TalkConversation conversation(talk, loop_.now());
     conversation_ = &conversation;
     was_opened_ = false;
+    start_recording(named.file);
     const auto link = io::open_transport(loop_, url_,
                                          {.opened =
                                               [this] {
                                                 was_opened_ = true;
+                                                recorder_->opened();
                                                 settle();
                                               },
                                           .received =
                                               [this](std::string_view bytes) {
+                                                recorder_->received(bytes);
                                                 conversation_->on_bytes(loop_.now(), bytes);
                                                 settle();
                                               },
@@ -151,6 +157,7 @@ class LiveRunner {
     });
     loop_.run();
     timer_.disarm();
+    recorder_.reset();
     result_.failure = conversation.failure();
     result_.record = conversation.record();
     if (conversation.came_too_late()) result_.skipped_because = "only right after the controller was switched on";
@@ -163,17 +170,21 @@ class LiveRunner {
     using namespace std::chrono_literals;
     Build build;
     std::string heard;
+    start_recording("$I");
     io::Transport* link = nullptr;
     const auto opened = io::open_transport(loop_, url_,
                                            {.opened =
                                                 [&] {
+                                                  recorder_->opened();
                                                   timer_.arm(loop_.now() + 2s, [&] {
                                                     link->write_lines("$I\n");
+                                                    recorder_->sent("$I\n");
                                                     timer_.arm(loop_.now() + 3s, [this] { loop_.stop(); });
                                                   });
                                                 },
                                             .received =
                                                 [&](std::string_view bytes) {
+                                                  recorder_->received(bytes);
                                                   heard += bytes;
                                                   if (heard.ends_with("ok\r\n")) loop_.stop();
                                                 },
@@ -185,7 +196,14 @@ class LiveRunner {
     return build;
   }
 
+  void start_recording(const std::string& talk) {
+    recorder_ = std::make_unique<io::LinkRecorder>(
+        loop_, recording_, session::LogHeader{.machine = to_string(url_), .talk = talk},
+        io::LinkRecorder::Callbacks{.noted = [](const std::string& sentence) { complain(sentence); }});
+  }
+
   void on_lost(const io::TransportError& error) {
+    recorder_->gone(io::loss_of(error.fault));
     if (!was_opened_) result_.link_trouble = io::explain(url_, error);
     conversation_->on_closed();
     loop_.stop();
@@ -197,14 +215,17 @@ class LiveRunner {
       const simulation::TalkOutbox said = conversation_->take_outbox();
       if (said.is_empty()) break;
       link_->write_lines(said.bytes);
+      recorder_->sent(said.bytes);
     }
     if (conversation_->is_finished()) return loop_.stop();
     timer_.arm(conversation_->next_deadline(), [this] { settle(); });
   }
 
   const io::MachineUrl url_;
+  const io::RecordingOptions recording_;
   io::EventLoop loop_;
   io::Timer timer_;
+  std::unique_ptr<io::LinkRecorder> recorder_;
   simulation::TalkConversation* conversation_ = nullptr;
   io::Transport* link_ = nullptr;
   bool was_opened_ = false;
@@ -237,7 +258,7 @@ ExitStatus hold_talks(const std::vector<NamedTalk>& talks, const VerifyOptions& 
   int failed = 0;
   int skipped = 0;
   for (const NamedTalk& talk : talks) {
-    const Result result = live != nullptr ? live->run(talk.talk) : run_virtually(talk.talk);
+    const Result result = live != nullptr ? live->run(talk) : run_virtually(talk.talk);
     if (result.link_trouble) {
       complain(*result.link_trouble);
       return ExitStatus::NoConnection;
@@ -266,7 +287,7 @@ ExitStatus verify(const VerifyOptions& options) {
       complain(io::explain(url.error()));
       return ExitStatus::Usage;
     }
-    live = std::make_unique<LiveRunner>(*url);
+    live = std::make_unique<LiveRunner>(*url, options.recording);
   }
   if (!options.personality.empty()) {
     const auto personality = io::parse_personality(options.personality);

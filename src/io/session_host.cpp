@@ -3,6 +3,8 @@
 #include <utility>
 #include <variant>
 
+#include "io/link_recorder.hpp"
+
 namespace kerf::io {
 namespace {
 
@@ -10,15 +12,6 @@ session::SessionOptions with_traits_of(const MachineUrl& url, session::SessionOp
   if (const auto* serial = std::get_if<SerialAddress>(&url)) options.link.baud = serial->baud;
   options.link.network = std::holds_alternative<TcpAddress>(url) || std::holds_alternative<WebSocketAddress>(url);
   return options;
-}
-
-session::LinkLoss loss_of(TransportFault fault) {
-  switch (fault) {
-    case TransportFault::ClosedByPeer: return session::LinkLoss::Closed;
-    case TransportFault::Unplugged: return session::LinkLoss::Unplugged;
-    case TransportFault::TimedOut: return session::LinkLoss::TimedOut;
-    default: return session::LinkLoss::Error;
-  }
 }
 
 }  // namespace
@@ -44,6 +37,13 @@ SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::Sessio
                    settle();
                  },
              .lost = [this](const TransportError& error) { on_lost(error); }}) {}
+
+SessionHost::~SessionHost() {
+  if (!is_open_) return;
+  callbacks_ = {};  // whoever listened may be half gone
+  session_.on_closed(loop_.now(), session::LinkLoss::HungUp);
+  write_down();
+}
 
 void SessionHost::submit(const session::Command& command) {
   session_.submit(loop_.now(), command);

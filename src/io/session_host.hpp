@@ -32,6 +32,10 @@ class SessionHost {
   /// Starts to open the link at once. `options.link` is filled in from the address. The connection is recorded.
   SessionHost(EventLoop& loop, const MachineUrl& url, session::SessionOptions options, Callbacks callbacks,
               const RecordingOptions& recording = {});
+  /// An open link is closed, and the log says that Kerf did it.
+  ~SessionHost();
+  SessionHost(const SessionHost&) = delete;
+  SessionHost& operator=(const SessionHost&) = delete;
 
   void submit(const session::Command& command);
   [[nodiscard]] const session::Session& session() const { return session_; }

@@ -70,6 +70,12 @@ struct NamePart {
   std::string operator()(const VirtualAddress&) const { return {}; }
 };
 
+/// Which values are passwords is only known once the controller was asked for its descriptions, if it has some.
+bool knows_passwords(const machine::Capabilities& machine) {
+  const auto is_told = [](const machine::SettingFact& setting) { return setting.source == machine::FactSource::Told; };
+  return !machine.has("ENUMS") || std::ranges::any_of(machine.settings, is_told);
+}
+
 }  // namespace
 
 std::vector<int> SettingsArchive::numbers() const {
@@ -121,7 +127,7 @@ std::optional<SettingsVersion> SettingsArchive::latest() const {
 std::expected<int, FileError> SettingsArchive::store(const machine::Capabilities& machine, std::string_view reason,
                                                      std::string_view taken) const {
   const auto settings = machine::settings_of(machine);
-  if (folder_.empty() || settings.empty()) return 0;
+  if (folder_.empty() || settings.empty() || !knows_passwords(machine)) return 0;
   const auto before = latest();
   if (before && machine::differences(machine, before->settings, settings).empty()) return 0;
   std::error_code fault;

@@ -22,6 +22,7 @@ struct LogHeader {
   std::string began{};     ///< wall clock, such as "2026-11-22T13:05:01.250Z", at this record's instant
   std::uint32_t part = 1;  ///< a long connection is cut into parts; only part 1 can be replayed alone
   bool listening = false;  ///< Kerf only listened: there is nothing that it decided
+  std::string talk{};      ///< the recorded talk that was held instead of a session's own; nothing was decided either
   SessionOptions options{};
 };
 
@@ -65,7 +66,7 @@ struct LinkGone {
   LinkLoss loss{};
 };
 
-BOOST_DESCRIBE_STRUCT(LogHeader, (), (version, kerf, machine, began, part, listening, options))
+BOOST_DESCRIBE_STRUCT(LogHeader, (), (version, kerf, machine, began, part, listening, talk, options))
 BOOST_DESCRIBE_STRUCT(LinkOpened, (), (opening))
 BOOST_DESCRIBE_STRUCT(BytesReceived, (), (bytes))
 BOOST_DESCRIBE_STRUCT(BytesSent, (), (realtime, lines))

@@ -45,7 +45,7 @@ Replay::Stop Replay::follow(Instant at, const LogHeader& header) {
   if (header.version != LogHeader{}.version) return stop(ReplayEnd::OtherVersion, at);
   if (header.part != part_ + 1) return stop(ReplayEnd::MiddlePart, at);
   part_ = header.part;
-  listening_ = header.listening;
+  listening_ = header.listening || !header.talk.empty();
   if (!session_) session_ = std::make_unique<RecordedSession>(header.options);
   return std::nullopt;
 }
@@ -65,7 +65,7 @@ Replay::Stop Replay::follow(Instant at, const BytesReceived& received) {
 }
 
 Replay::Stop Replay::follow(Instant at, const BytesSent& sent) {
-  if (sent != owed_) return differ(at, sent);
+  if (!listening_ && sent != owed_) return differ(at, sent);
   tally_.bytes_sent += sent.realtime.size() + sent.lines.size();
   owed_ = {};
   return std::nullopt;

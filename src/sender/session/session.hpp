@@ -49,8 +49,14 @@ struct SessionOptions {
 BOOST_DESCRIBE_STRUCT(SessionOptions, (), (link, reset_policy, enumerate, automatic_reports))
 
 /// Why the link went away.
-enum class LinkLoss { Closed, Unplugged, TimedOut, Error };
-BOOST_DESCRIBE_ENUM(LinkLoss, Closed, Unplugged, TimedOut, Error)
+enum class LinkLoss {
+  Closed,  ///< by the other end
+  Unplugged,
+  TimedOut,
+  Error,
+  HungUp,  ///< Kerf itself ended the connection
+};
+BOOST_DESCRIBE_ENUM(LinkLoss, Closed, Unplugged, TimedOut, Error, HungUp)
 
 /// Where the conversation stands.
 enum class SessionPhase { Closed, Connecting, Waiting, Ready, Failed };
