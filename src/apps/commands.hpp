@@ -95,6 +95,7 @@ struct ConsoleOptions {
   std::string machine = kDefaultMachine;
   io::RecordingOptions recording{};
   bool may_reset = false;
+  bool verbose = false;  ///< also each step of the handshake
 };
 [[nodiscard]] ExitStatus console(const ConsoleOptions& options);
 

@@ -43,6 +43,7 @@ class Console {
         url_(std::move(url)),
         recording_(options.recording),
         may_reset_(options.may_reset),
+        verbose_(options.verbose),
         last_words_(loop) {}
 
   ExitStatus run() {
@@ -57,7 +58,8 @@ class Console {
     if (is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO)) {
       callbacks.interrupted = [this](const io::TransportError& error) { on_interrupted(error); };
     }
-    host_ = std::make_unique<io::SessionHost>(loop_, url_, options, std::move(callbacks), recording_);
+    host_ =
+        std::make_unique<io::SessionHost>(loop_, url_, options, std::move(callbacks), recording_, io::WordsUse::Recall);
     loop_.run();
     return status_.value_or(ExitStatus::Done);
   }
@@ -74,6 +76,19 @@ class Console {
     begin();
   }
   void on(const session::ControllerReset& reset) { show(reset.reason); }
+  void on(const session::ControllerRestarted& restarted) {
+    if (!restarted.asked) show("The controller has restarted of its own accord: what it was doing is over.");
+  }
+  void on(const session::HandshakeMoved& moved) {
+    if (!verbose_) return;
+    const auto& [at, from, to, cause, evidence] = moved.change;
+    show(fmt::format("    {:.3f} s: {}, from {} to {}{}", base::to_seconds(at),
+                     boost::describe::enum_to_string(cause, "?"), boost::describe::enum_to_string(from, "?"),
+                     boost::describe::enum_to_string(to, "?"), evidence.empty() ? "" : ", seen from: " + evidence));
+  }
+  void on(const session::HandshakeNoted& noted) {
+    if (verbose_) show("    " + noted.sentence);
+  }
   void on(const session::ControllerBusy& busy) {
     show(busy.sentence + (input_ ? "" : " You may watch and use the realtime keys."));
     begin();
@@ -236,6 +251,7 @@ class Console {
   const io::MachineUrl url_;
   const io::RecordingOptions& recording_;
   const bool may_reset_;
+  const bool verbose_;
   io::Timer last_words_;
   std::optional<ExitStatus> status_;
   int reports_asked_ = 0;

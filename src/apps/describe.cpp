@@ -1,6 +1,10 @@
 // `kerf info`: what a controller is and can do, as it tells itself.
 
+#include <chrono>
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -89,9 +93,10 @@ void print_codes(std::string_view title, const std::vector<machine::CodeFact>& c
   }
 }
 
-void print_text(const Capabilities& machine) {
+void print_text(const Capabilities& machine, std::string_view link) {
   print_row("Firmware",
             fmt::format("{} {}{}", machine.firmware, machine.version, source_text(machine.firmware_source)));
+  print_row("Link", link);
   print_row("Build", machine.build);
   print_row("Welcome", machine.welcome);
   print_row("Its name", machine.user_text);
@@ -115,21 +120,62 @@ void print_text(const Capabilities& machine) {
   if (!machine.complete) put("\nThe machine left a question unanswered, so this may not be everything.\n");
 }
 
-}  // namespace
+/// Round trips are counted until there are this many, or for so long.
+constexpr std::uint32_t kRoundTripsWanted = 5;
+constexpr Duration kRoundTripsPatience = std::chrono::seconds{1};
 
-ExitStatus describe_machine(const DescribeOptions& options) {
-  return visit(options.machine, {.recording = options.recording}, [&](const io::SessionHost& host) {
-    const Capabilities found = machine::without_passwords(host.session().capabilities());
-    const auto& drift = host.session().settings_drift();
-    if (options.json) {
+std::string link_text(const session::LinkHealth& link) {
+  if (!link.answer_time_s) return link.automatic ? "reports come unasked" : "no report was answered yet";
+  const auto ms = [](double seconds) { return seconds * 1000; };
+  std::string text = fmt::format("answers within {:.1f} ms", ms(*link.answer_time_s));
+  if (link.round_trips > 1) {
+    text += fmt::format(" ({:.1f} to {:.1f} ms in {} round trips)", ms(*link.answer_time_least_s),
+                        ms(*link.answer_time_most_s), link.round_trips);
+  }
+  return text;
+}
+
+/// Waits for a few round trips, then says everything.
+class Description : public Errand {
+ public:
+  explicit Description(bool json) : json_(json) {}
+
+  std::optional<ExitStatus> begin(io::SessionHost& host, const io::MachineUrl&) override {
+    until_ = host.now() + kRoundTripsPatience;
+    return std::nullopt;
+  }
+
+  std::optional<ExitStatus> on_event(io::SessionHost& host, const session::Event&) override {
+    const session::LinkHealth link = host.session().link_health(host.now());
+    if (link.round_trips < kRoundTripsWanted && host.now() < until_) return std::nullopt;
+    say(host.session(), link);
+    return ExitStatus::Done;
+  }
+
+ private:
+  void say(const session::Session& session, const session::LinkHealth& link) const {
+    const Capabilities found = machine::without_passwords(session.capabilities());
+    const auto& drift = session.settings_drift();
+    if (json_) {
       io::Json json = io::to_json(found);
       json["settings_drift"] = io::to_json(drift);
+      json["link"] = io::to_json(link);
       put("{}\n", io::print(json, 2));
       return;
     }
-    print_text(found);
+    print_text(found, link_text(link));
     if (!drift.empty()) put("\n{}\n", session::drift_sentence(drift, {}));
-  });
+  }
+
+  const bool json_;
+  Instant until_{};
+};
+
+}  // namespace
+
+ExitStatus describe_machine(const DescribeOptions& options) {
+  Description description(options.json);
+  return run_errand(options.machine, {.recording = options.recording}, description);
 }
 
 }  // namespace kerf::apps

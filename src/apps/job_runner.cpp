@@ -69,7 +69,7 @@ ExitStatus JobRunner::run(const io::RecordingOptions& recording) {
       io::SessionHost::Callbacks{.event = [this](const session::Event& event) { on_event(event); },
                                  .lost = [this](const io::TransportError& error) { on_lost(error); },
                                  .noted = [this](const std::string& sentence) { view_.noted(sentence); }},
-      recording);
+      recording, io::WordsUse::Recall);
   loop_.run();
   return status_.value_or(ExitStatus::Interrupted);
 }

@@ -215,6 +215,7 @@ void add_console(CLI::App& kerf, Chosen& chosen) {
   command->add_flag(
       "--reset", options->may_reset,
       "Reset a controller that answers nothing, as one in a hard-limit alarm; whatever it does, it stops");
+  command->add_flag("-v,--verbose", options->verbose, "Also show each step of getting to know the controller");
   command->footer(
       "\nAt the start of a line these keys act at once: ? status, ! feed hold, ~ cycle start, Ctrl-X reset.\n"
       "Arrow up brings back earlier lines; Ctrl-D leaves.\n"

@@ -18,12 +18,14 @@
 #include "common/vocabulary/errors.hpp"
 #include "common/vocabulary/firmware.hpp"
 #include "common/vocabulary/machine_state.hpp"
+#include "common/vocabulary/travel.hpp"
 #include "firmware/hardware.hpp"
 
 namespace kerf::firmware {
 
 using vocabulary::ErrorCode;
 using vocabulary::MachineState;
+using vocabulary::TravelRule;
 
 /// Set of machine states, for "allowed in" columns.
 class StateSet {
@@ -138,13 +140,6 @@ using CommandParser = std::expected<ParsedCommand, ErrorCode> (*)(const Personal
 /// The value that `text` gives to a setting, as one firmware checks it.
 using SettingCheck = std::expected<std::string, ErrorCode> (*)(const SettingsStore&, const vocabulary::SettingMatch&,
                                                                std::string_view text);
-
-/// Where the machine's travel lies, in machine coordinates (motion.md 1.6).
-enum class TravelRule : std::uint8_t {
-  NegativeSpace,        ///< Grbl: always below zero
-  MirroredByDirection,  ///< Rabbit: above zero on axes that home towards minus
-  HomedEnvelope,        ///< grblHAL: less the pull-off with hard limits on; zero at the switch with `$22` bit 3
-};
 
 /// How homing goes, and what the machine remembers of it.
 struct HomingRules {

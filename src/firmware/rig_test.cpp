@@ -270,7 +270,7 @@ TEST(Rig, EveryDeedIsAnEntryInTheLog) {
     Site site;
     // The first way to write it, with something in the place of what is meant.
     std::string line{usage.substr(0, usage.find_first_of("|["))};
-    for (const auto& [placeholder, value] :
+    for (const auto& [meant, value] :
          std::initializer_list<std::pair<std::string_view, std::string_view>>{{"door open", "door open"},
                                                                               {"N on", "0 on"},
                                                                               {"N VALUE", "0 1"},
@@ -278,7 +278,7 @@ TEST(Rig, EveryDeedIsAnEntryInTheLog) {
                                                                               {"TIME", "1s"},
                                                                               {"TEXT", "text"},
                                                                               {"seed N", "seed 1"}}) {
-      if (const auto at = line.find(placeholder); at != std::string::npos) line.replace(at, placeholder.size(), value);
+      if (const auto at = line.find(meant); at != std::string::npos) line.replace(at, meant.size(), value);
     }
     while (line.ends_with(' ')) line.pop_back();
     if (line == "limit X") line += " on";

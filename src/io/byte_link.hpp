@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include <boost/system/error_code.hpp>
@@ -31,13 +32,40 @@ class ByteLink {
   /// There may be room again.
   virtual void go_on() = 0;
   /// Goes out before every line byte that the operating system does not have yet.
-  virtual void write_realtime(std::string_view bytes) = 0;
-  virtual void write_lines(std::string_view bytes) = 0;
+  void write_realtime(std::string_view bytes) {
+    realtime_.append(bytes);
+    write();
+  }
+  void write_lines(std::string_view bytes) {
+    lines_.append(bytes);
+    write();
+  }
   virtual void close() = 0;
+
+  /// Bytes that wait here because the other end reads too slowly.
+  [[nodiscard]] std::size_t waiting_bytes() const { return realtime_.size() + lines_.size(); }
+  void drop_waiting_lines() { lines_.clear(); }
+
+ protected:
+  /// Gives the next piece to the operating system, unless it still has one.
+  virtual void write() = 0;
+  /// The next piece, realtime bytes first; empty when nothing waits.
+  [[nodiscard]] std::string take_piece();
+
+ private:
+  std::string realtime_;
+  std::string lines_;
 };
 
 /// Most bytes that are given to the operating system at once: small enough that a realtime byte never waits long behind
 /// one piece, large enough for a fast link.
 inline constexpr std::size_t kMostBytesAtOnce = 256;
+
+inline std::string ByteLink::take_piece() {
+  std::string& queue = realtime_.empty() ? lines_ : realtime_;
+  std::string piece = queue.substr(0, kMostBytesAtOnce);
+  queue.erase(0, piece.size());
+  return piece;
+}
 
 }  // namespace kerf::io

@@ -17,12 +17,13 @@ session::SessionOptions with_traits_of(const MachineUrl& url, session::SessionOp
 }  // namespace
 
 SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::SessionOptions options, Callbacks callbacks,
-                         const RecordingOptions& recording)
+                         const RecordingOptions& recording, WordsUse words)
     : loop_(loop),
       session_(with_traits_of(url, options)),
       log_(loop, recording, {.machine = to_string(url), .options = with_traits_of(url, options)}),
       callbacks_(std::move(callbacks)),
       keeper_(url),
+      words_(url, words),
       timer_(loop),
       link_(loop, url, callbacks_.interrupted ? Persistence::Again : Persistence::Once,
             {.opened =
@@ -79,6 +80,7 @@ void SessionHost::settle() {
     write_down();  // behind the bytes: they have no time to lose
     for (const session::Event& event : outbox.events) {
       if (const auto command = keeper_.on_event(event, session_)) session_.submit(loop_.now(), *command);
+      if (const auto command = words_.on_event(event)) session_.submit(loop_.now(), *command);
       callbacks_.event(event);
     }
   }

@@ -9,6 +9,7 @@
 #include "io/machine_url.hpp"
 #include "io/settings_keeper.hpp"
 #include "io/wire_log.hpp"
+#include "io/words_keeper.hpp"
 #include "sender/session/recorded_session.hpp"
 
 namespace kerf::io {
@@ -31,7 +32,7 @@ class SessionHost {
 
   /// Starts to open the link at once. `options.link` is filled in from the address. The connection is recorded.
   SessionHost(EventLoop& loop, const MachineUrl& url, session::SessionOptions options, Callbacks callbacks,
-              const RecordingOptions& recording = {});
+              const RecordingOptions& recording = {}, WordsUse words = WordsUse::AskAgain);
   /// An open link is closed, and the log says that Kerf did it.
   ~SessionHost();
   SessionHost(const SessionHost&) = delete;
@@ -55,6 +56,7 @@ class SessionHost {
   WireLog log_;
   Callbacks callbacks_;
   SettingsKeeper keeper_;
+  WordsKeeper words_;
   Timer timer_;
   LinkKeeper link_;
   bool is_open_ = false;

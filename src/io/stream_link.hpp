@@ -34,20 +34,6 @@ class StreamLink final : public ByteLink, public std::enable_shared_from_this<St
     if (callbacks_ && std::exchange(waits_for_room_, false)) read();
   }
 
-  void write_realtime(std::string_view bytes) override {
-    realtime_.append(bytes);
-    write();
-  }
-
-  void write_lines(std::string_view bytes) override {
-    lines_.append(bytes);
-    write();
-  }
-
-  /// Bytes that wait here because the other end reads too slowly.
-  [[nodiscard]] std::size_t waiting_bytes() const { return realtime_.size() + lines_.size(); }
-  void drop_waiting_lines() { lines_.clear(); }
-
   void close() override {
     callbacks_.reset();
     boost::system::error_code ignored;
@@ -55,6 +41,19 @@ class StreamLink final : public ByteLink, public std::enable_shared_from_this<St
   }
 
   [[nodiscard]] Stream& stream() { return stream_; }
+
+ protected:
+  void write() override {
+    if (is_writing_ || this->waiting_bytes() == 0) return;
+    is_writing_ = true;
+    outgoing_ = this->take_piece();
+    boost::asio::async_write(stream_, boost::asio::buffer(outgoing_),
+                             [self = this->shared_from_this()](boost::system::error_code fault, std::size_t) {
+                               self->is_writing_ = false;
+                               if (fault) return self->lose(fault);
+                               self->write();
+                             });
+  }
 
  private:
   void read() {
@@ -71,20 +70,6 @@ class StreamLink final : public ByteLink, public std::enable_shared_from_this<St
                             });
   }
 
-  void write() {
-    if (is_writing_ || (realtime_.empty() && lines_.empty())) return;
-    is_writing_ = true;
-    std::string& queue = realtime_.empty() ? lines_ : realtime_;
-    outgoing_.assign(queue, 0, kMostBytesAtOnce);
-    queue.erase(0, outgoing_.size());
-    boost::asio::async_write(stream_, boost::asio::buffer(outgoing_),
-                             [self = this->shared_from_this()](boost::system::error_code fault, std::size_t) {
-                               self->is_writing_ = false;
-                               if (fault) return self->lose(fault);
-                               self->write();
-                             });
-  }
-
   void lose(boost::system::error_code fault) {
     const auto callbacks = std::exchange(callbacks_, nullptr);
     if (!callbacks) return;
@@ -96,8 +81,6 @@ class StreamLink final : public ByteLink, public std::enable_shared_from_this<St
   Stream stream_;
   std::shared_ptr<const Callbacks> callbacks_;
   std::array<char, 4096> incoming_{};
-  std::string realtime_;
-  std::string lines_;
   std::string outgoing_;
   bool is_writing_ = false;
   bool waits_for_room_ = false;

@@ -52,22 +52,23 @@ class WebSocketLink : public ByteLink, public std::enable_shared_from_this<WebSo
     if (callbacks_ && std::exchange(waits_for_room_, false)) deliver();
   }
 
-  void write_realtime(std::string_view bytes) override {
-    realtime_.append(bytes);
-    write();
-  }
-
-  void write_lines(std::string_view bytes) override {
-    lines_.append(bytes);
-    write();
-  }
-
   void close() override {
     callbacks_.reset();
     close_socket();
   }
 
  protected:
+  void write() override {
+    if (!is_open_ || is_writing_ || waiting_bytes() == 0) return;
+    is_writing_ = true;
+    outgoing_ = take_piece();
+    stream_.async_write(asio::buffer(outgoing_), [self = shared_from_this()](error_code fault, std::size_t) {
+      self->is_writing_ = false;
+      if (fault) return self->lose(fault);
+      self->write();
+    });
+  }
+
   using Stream = websocket::stream<tcp::socket, false>;
 
   /// The handshake is over.
@@ -125,19 +126,6 @@ class WebSocketLink : public ByteLink, public std::enable_shared_from_this<WebSo
     if (callbacks_) read();
   }
 
-  void write() {
-    if (!is_open_ || is_writing_ || (realtime_.empty() && lines_.empty())) return;
-    is_writing_ = true;
-    std::string& queue = realtime_.empty() ? lines_ : realtime_;
-    outgoing_.assign(queue, 0, kMostBytesAtOnce);
-    queue.erase(0, outgoing_.size());
-    stream_.async_write(asio::buffer(outgoing_), [self = shared_from_this()](error_code fault, std::size_t) {
-      self->is_writing_ = false;
-      if (fault) return self->lose(fault);
-      self->write();
-    });
-  }
-
   void close_socket() {
     error_code ignored;
     stream_.next_layer().close(ignored);
@@ -146,8 +134,6 @@ class WebSocketLink : public ByteLink, public std::enable_shared_from_this<WebSo
   Stream stream_;
   std::shared_ptr<const Callbacks> callbacks_;
   beast::flat_buffer incoming_;
-  std::string realtime_;
-  std::string lines_;
   std::string outgoing_;
   bool is_open_ = false;
   bool is_writing_ = false;

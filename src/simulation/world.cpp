@@ -134,12 +134,6 @@ void World::inject_to_session(std::string_view bytes) {
   settle();
 }
 
-void World::touch_pendant(std::string_view bytes) {
-  watch_.on_stranger();
-  rig_.on_pendant_bytes(now_, bytes);
-  settle();
-}
-
 void World::record(Direction direction, const std::string& bytes) {
   if (options_.keeps_transcript) transcript_.push_back({.at = now_, .direction = direction, .bytes = bytes});
 }

@@ -77,8 +77,6 @@ class World {
   void inject_to_controller(std::string_view bytes);
   /// Bytes that reach the session although the controller did not send them.
   void inject_to_session(std::string_view bytes);
-  /// Bytes that the pendant sends, where one is fitted.
-  void touch_pendant(std::string_view bytes);
   /// The controller loses power and comes back with what it had stored.
   void restart_controller();
 

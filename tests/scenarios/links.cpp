@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario.hpp"
+#include "sender/session/words_listener.hpp"
 
 namespace kerf::scenarios {
 namespace {
@@ -56,6 +57,56 @@ TEST_P(Links, ASilentControllerOnANetworkIsAsked) {
   EXPECT_THAT(known.alarms, Not(IsEmpty()));
   EXPECT_THAT(known.errors, Not(IsEmpty()));
   EXPECT_THAT(told<session::HandshakeFailed>(world), IsEmpty());
+}
+
+/// How long it takes to know a machine that has been met before, at 115200 baud; nothing where it is not told.
+Duration time_to_know(Firmware firmware, const machine::Words& words, std::string& told_of) {
+  auto options = quick_serial(firmware);
+  options.head_start = 1min;
+  World world{options};
+  world.open();
+  const auto is_identified = [](const auto& w) { return is_ready(w) || !told<session::FirmwareIdentified>(w).empty(); };
+  EXPECT_TRUE(world.run_until(is_identified, 60s));
+  const Instant identified_at = world.now();
+  if (!words.answers.empty()) world.submit(session::RecallWords{words});
+  EXPECT_TRUE(world.run_until(is_ready, 60s));
+  const auto& known = world.session().capabilities();
+  for (const auto& error : known.errors) told_of += error.text + "\n";
+  for (const auto& alarm : known.alarms) told_of += alarm.text + "\n";
+  for (const auto& setting : known.settings) told_of += setting.name + setting.help + setting.group + "\n";
+  return world.now() - identified_at;
+}
+
+machine::Words words_of(Firmware firmware) {
+  auto options = quick_serial(firmware);
+  World world{options};
+  EXPECT_TRUE(connect(world));
+  session::WordsListener listener;
+  for (const auto& event : world.events()) listener.on_event(event);
+  return listener.words();
+}
+
+TEST(LinksOfKnownMachines, AreReadyWithoutAskingForEverythingAgain) {
+  for (const Firmware firmware : {Firmware::GrblHal, Firmware::Rabbit}) {
+    const machine::Words words = words_of(firmware);
+    ASSERT_THAT(words.answers, Not(IsEmpty()));
+    std::string asked;
+    std::string recalled;
+    const Duration before = time_to_know(firmware, {}, asked);
+    const Duration after = time_to_know(firmware, words, recalled);
+    EXPECT_EQ(asked, recalled);
+    RecordProperty(word_for(firmware) + "_asked_ms", static_cast<int>(before / 1ms));
+    RecordProperty(word_for(firmware) + "_recalled_ms", static_cast<int>(after / 1ms));
+    EXPECT_LT(after, before);
+    if (firmware == Firmware::GrblHal) EXPECT_LT(after, before / 4);
+  }
+}
+
+TEST(LinksOfKnownMachines, WordsOfAnotherFirmwareAreNotTaken) {
+  machine::Words words = words_of(Firmware::GrblHal);
+  words.identity += "|another";
+  std::string asked;
+  EXPECT_GT(time_to_know(Firmware::GrblHal, words, asked), 1s);
 }
 
 TEST_P(Links, AMemoryFreshFromTheFactoryIsNoObstacle) {

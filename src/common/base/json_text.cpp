@@ -9,7 +9,6 @@ namespace kerf::base {
 namespace {
 
 constexpr int kDeepest = 16;
-constexpr std::string_view kHexDigits = "0123456789abcdef";
 
 void append_utf8(std::string& out, std::uint32_t code) {
   const auto put = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
@@ -152,25 +151,9 @@ std::optional<JsonValue> parse_json(std::string_view text) {
 }
 
 void append_json_string(std::string& out, std::string_view bytes) {
+  constexpr EscapeStyle kJson{.code_prefix = "\\u00", .hex_digits = "0123456789abcdef", .in_quotes = true};
   out += '"';
-  for (const char byte : bytes) {
-    switch (byte) {
-      case '"': out += "\\\""; continue;
-      case '\\': out += "\\\\"; continue;
-      case '\r': out += "\\r"; continue;
-      case '\n': out += "\\n"; continue;
-      case '\t': out += "\\t"; continue;
-      default: break;
-    }
-    if (byte >= ' ' && byte <= '~') {
-      out += byte;
-      continue;
-    }
-    const auto code = static_cast<unsigned char>(byte);
-    out += "\\u00";
-    out += kHexDigits[code >> 4U];
-    out += kHexDigits[code & 0xFU];
-  }
+  append_escaped(out, bytes, kJson);
   out += '"';
 }
 

@@ -81,8 +81,7 @@ std::string to_fixed(double value, int decimals) {
   return out;
 }
 
-void append_escaped(std::string& out, std::string_view bytes) {
-  static constexpr std::string_view kHexDigits = "0123456789ABCDEF";
+void append_escaped(std::string& out, std::string_view bytes, const EscapeStyle& style) {
   for (const char byte : bytes) {
     switch (byte) {
       case '\\': out += "\\\\"; continue;
@@ -91,14 +90,15 @@ void append_escaped(std::string& out, std::string_view bytes) {
       case '\t': out += "\\t"; continue;
       default: break;
     }
+    if (byte == '"' && style.in_quotes) out += '\\';
     if (byte >= ' ' && byte <= '~') {
       out += byte;
       continue;
     }
     const auto code = static_cast<unsigned char>(byte);
-    out += "\\x";
-    out += kHexDigits[code >> 4U];
-    out += kHexDigits[code & 0xFU];
+    out += style.code_prefix;
+    out += style.hex_digits[code >> 4U];
+    out += style.hex_digits[code & 0xFU];
   }
 }
 

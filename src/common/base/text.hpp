@@ -66,9 +66,16 @@ void append_fixed(std::string& out, double value, int decimals);
 /// `append_fixed` into a new string.
 [[nodiscard]] std::string to_fixed(double value, int decimals);
 
+/// How the bytes that have no letter and no name are written, and whether the text stands in quotes.
+struct EscapeStyle {
+  std::string_view code_prefix = "\\x";
+  std::string_view hex_digits = "0123456789ABCDEF";
+  bool in_quotes = false;
+};
+
 /// Appends `bytes` so that a person can read them: printable ASCII as it is, backslash doubled, `\r`, `\n` and `\t` by
 /// name, every other byte as `\x1B`.
-void append_escaped(std::string& out, std::string_view bytes);
+void append_escaped(std::string& out, std::string_view bytes, const EscapeStyle& style = {});
 
 /// `append_escaped` into a new string.
 [[nodiscard]] std::string escape(std::string_view bytes);

@@ -132,8 +132,16 @@ void Secrets::learn(const NewOptions& options) {
 void Secrets::learn_from(std::string_view line) {
   if (!line.starts_with("[SETTING:") && !line.starts_with("[NEWOPT:")) return;
   const auto message = decode(line);
-  if (const auto* row = std::get_if<SettingDefinition>(&message)) learn(*row);
+  if (const auto* row = std::get_if<SettingDefinition>(&message)) {
+    learn(*row);
+    was_described_ = true;
+  }
   if (const auto* options = std::get_if<NewOptions>(&message)) learn(*options);
+}
+
+void Secrets::recall_from(std::string_view line) {
+  const auto message = decode(line);
+  if (const auto* row = std::get_if<SettingDefinition>(&message)) learn(*row);
 }
 
 Secrets::Kind Secrets::kind_of(std::string_view id) const {
@@ -151,7 +159,7 @@ bool Secrets::is_secret(std::string_view id, std::string_view value) const {
   switch (kind_of(id)) {
     case Kind::Password: return !value.empty();
     case Kind::Open: return false;
-    case Kind::Unknown: return !is_number(value) || (!value.empty() && has_descriptions_ && told_.empty());
+    case Kind::Unknown: return !is_number(value) || (!value.empty() && has_descriptions_ && !was_described_);
   }
   return true;
 }

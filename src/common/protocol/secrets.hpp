@@ -22,6 +22,8 @@ class Secrets {
   void learn(const NewOptions& options);
   /// Learns from a line of the controller, if there is something to learn.
   void learn_from(std::string_view line);
+  /// The same from a line that it said at another time: there may be settings by now that it did not describe then.
+  void recall_from(std::string_view line);
 
   /// The value of setting `id` ("75") must not be shown.
   [[nodiscard]] bool is_secret(std::string_view id, std::string_view value) const;
@@ -42,6 +44,8 @@ class Secrets {
   /// What the controller told; true for passwords.
   std::map<std::string, bool, std::less<>> told_;
   bool has_descriptions_ = false;
+  /// At least one came over this link.
+  bool was_described_ = false;
 };
 
 }  // namespace kerf::protocol

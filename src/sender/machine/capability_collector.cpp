@@ -24,6 +24,10 @@ bool has_sizes(const protocol::BuildOptions& options) {
   return options.planner_blocks || options.rx_bytes;
 }
 
+/// Rows of `$I+` that tell of the hardware and of what is compiled in.
+constexpr std::array<std::string_view, 7> kLastingRows{"BOARD",  "DRIVER", "DRIVER VERSION", "DRIVER OPTIONS",
+                                                       "AUX IO", "PLUGIN", "SIGNALS"};
+
 // Columns of `$ESH` behind the id.
 constexpr std::size_t kTableColumns = 9;
 constexpr std::size_t kHelpColumn = 4;
@@ -187,6 +191,29 @@ FactSource CapabilityCollector::family_source() const {
 bool CapabilityCollector::has_token(std::string_view token) const {
   if (!new_options_) return false;
   return std::ranges::any_of(new_options_->flags, [token](const auto& flag) { return name_of_token(flag) == token; });
+}
+
+std::string CapabilityCollector::identity() const {
+  if (!version_ || !options_) return {};
+  std::string text{dialect().key};
+  const auto add = [&text](std::string_view part) { (text += '|') += part; };
+  add(version_->version);
+  add(version_->build);
+  add(options_->letters);
+  add(axes().letters);
+  for (const auto& flag : new_options_.value_or(protocol::NewOptions{}).flags) add(flag);
+  for (const BuildFact& row : build_rows_) {
+    // Not those that change from day to day, such as free memory or an address.
+    if (std::ranges::find(kLastingRows, row.key) != kLastingRows.end()) add(row.key + ":" + row.value);
+  }
+  return text;
+}
+
+bool CapabilityCollector::has_undescribed_value() const {
+  return !definitions_.empty() && std::ranges::any_of(values_, [this](const protocol::SettingValue& value) {
+    const auto number = base::parse_int(value.id);
+    return number && !definitions_.contains(*number);
+  });
 }
 
 AxesFact CapabilityCollector::axes() const {

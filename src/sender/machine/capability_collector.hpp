@@ -29,6 +29,10 @@ class CapabilityCollector {
   [[nodiscard]] Capabilities capabilities(bool complete) const;
   /// The setting's id as it is known here: Rabbit's "X/MaxRate" is "110", "Homing/Squared" has a name only.
   [[nodiscard]] std::string id_of(std::string_view id) const;
+  /// The same text as long as the controller runs the same firmware with the same options; empty while it is not known.
+  [[nodiscard]] std::string identity() const;
+  /// It has settings that it describes, and one with a value is not described.
+  [[nodiscard]] bool has_undescribed_value() const;
   [[nodiscard]] bool knows_spindles() const { return !spindles_.empty(); }
 
  private:

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "common/base/overloaded.hpp"
+#include "common/protocol/decode.hpp"
 #include "sender/machine/handshake_sentences.hpp"
 #include "sender/machine/rest.hpp"
 
@@ -37,6 +38,8 @@ constexpr Duration kSilentAskEvery = 2s;
 constexpr Duration kRestAfterBusy = 1s;
 /// Older reports say nothing about whether a line may be sent.
 constexpr Duration kKnowledge = 400ms;
+/// The first question behind those that tell of the firmware.
+constexpr std::string_view kAfterIdentity = "$G";
 constexpr int kMostAskedInVain = 6;
 constexpr int kMostRestarts = 5;
 /// Ends a half line in such a way that no firmware executes it: the bracket may close a comment (or is dropped, by
@@ -342,12 +345,17 @@ void Handshake::on_answer(Instant now, int error_code) {
 void Handshake::begin_questions(Instant now) {
   interview_.begin(quick_);
   latch_clearing_ = false;
+  identity_told_ = quick_ || !options_.enumerate;
   enter(now, HandshakeStage::Questioning, now + kQuestionPatience, {HandshakeCause::LineAnswered, last_line_});
   ask_next(now);
 }
 
 void Handshake::ask_next(Instant now) {
-  if (auto question = interview_.next(collector_))
+  auto question = interview_.next(collector_);
+  if (question == kAfterIdentity && !std::exchange(identity_told_, true)) {
+    orders_.emplace_back(Identified{collector_.identity()});
+  }
+  if (question)
     ask_line(now, *std::move(question));
   else
     finish(now, true);
@@ -360,6 +368,16 @@ void Handshake::finish(Instant now, bool complete) {
   quick_ = false;
   const auto cause = complete ? HandshakeCause::LineAnswered : HandshakeCause::NothingCame;
   enter(now, HandshakeStage::Ready, kNever, {cause, last_line_});
+}
+
+void Handshake::recall(const Words& words) {
+  if (stage_ != HandshakeStage::Questioning || words.identity.empty()) return;
+  if (words.identity != collector_.identity()) return;
+  for (const KeptAnswer& answer : words.answers) {
+    for (const std::string& line : answer.lines) collector_.fold(protocol::decode(line));
+    collector_.fold(protocol::Ok{});
+  }
+  interview_.pass_over(words);
 }
 
 void Handshake::refresh() {

@@ -65,6 +65,9 @@ class Handshake {
   [[nodiscard]] HandshakeStage stage() const { return stage_; }
   [[nodiscard]] std::vector<HandshakeOrder> take_orders();
   [[nodiscard]] const Capabilities& capabilities() const { return capabilities_; }
+  /// What this firmware said about itself at another time, which it is not asked for again; words of another firmware
+  /// are passed over.
+  void recall(const Words& words);
   /// Settings were listed again after Ready: what is told by capabilities() follows.
   void refresh();
   /// A setting was written by hand.
@@ -133,6 +136,7 @@ class Handshake {
   bool cleared_twice_ = false;
   /// The same for a question.
   bool question_repeated_ = false;
+  bool identity_told_ = false;
   int restarts_ = 0;
   int boots_ = 0;
   /// It failed, and nothing that comes can change that.

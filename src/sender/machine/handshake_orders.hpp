@@ -87,6 +87,10 @@ struct Remark {
 struct ResetNotice {
   std::string reason;
 };
+/// What firmware it is has been told; its enumerations come next.
+struct Identified {
+  std::string identity;
+};
 struct BusyNotice {
   vocabulary::MachineState state{};
   bool pendant = false;
@@ -99,7 +103,7 @@ struct Failure {
   HandshakeFailure failure{};
   std::string sentence;
 };
-using HandshakeOrder =
-    std::variant<StageChange, SendByte, AskLine, ForgetQuestions, Remark, ResetNotice, BusyNotice, Success, Failure>;
+using HandshakeOrder = std::variant<StageChange, SendByte, AskLine, ForgetQuestions, Remark, ResetNotice, Identified,
+                                    BusyNotice, Success, Failure>;
 
 }  // namespace kerf::machine

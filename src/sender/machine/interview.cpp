@@ -8,15 +8,22 @@ namespace kerf::machine {
 void Interview::begin(bool brief) {
   brief_ = brief;
   asked_.clear();
+  passed_over_.clear();
 }
 
 bool Interview::was_asked(const std::string& question) const {
   return std::ranges::find(asked_, question) != asked_.end();
 }
 
+void Interview::pass_over(const Words& words) {
+  for (const KeptAnswer& answer : words.answers) passed_over_.push_back(answer.question);
+}
+
 std::optional<std::string> Interview::next(const CapabilityCollector& known) {
+  // What was kept is out of date: settings come and go with the values of others.
+  if (!passed_over_.empty() && known.has_undescribed_value()) passed_over_.clear();
   for (std::string& question : questions(known)) {
-    if (was_asked(question)) continue;
+    if (was_asked(question) || std::ranges::find(passed_over_, question) != passed_over_.end()) continue;
     asked_.push_back(question);
     return std::move(question);
   }

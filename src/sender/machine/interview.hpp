@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sender/machine/capability_collector.hpp"
+#include "sender/machine/words.hpp"
 
 namespace kerf::machine {
 
@@ -17,6 +18,8 @@ class Interview {
 
   /// From the beginning. `brief`: only what a reset changes.
   void begin(bool brief);
+  /// The answers to these are known already.
+  void pass_over(const Words& words);
   /// The next question, which counts as asked from now on; empty when nothing is left to ask.
   [[nodiscard]] std::optional<std::string> next(const CapabilityCollector& known);
   [[nodiscard]] const std::vector<std::string>& asked() const { return asked_; }
@@ -28,6 +31,8 @@ class Interview {
 
   bool enumerate_;
   bool brief_ = false;
+  /// Answered from what was kept.
+  std::vector<std::string> passed_over_;
   std::vector<std::string> asked_;
 };
 

@@ -16,6 +16,7 @@
 #include "sender/job/program.hpp"
 #include "sender/job/timeline.hpp"
 #include "sender/machine/settings_plan.hpp"
+#include "sender/machine/words.hpp"
 
 namespace kerf::session {
 
@@ -83,16 +84,21 @@ struct RecallSettings {
   std::string since;
 };
 
+/// What the firmware said about itself at another time, for FirmwareIdentified: it is not asked for again.
+struct RecallWords {
+  machine::Words words;
+};
+
 /// 0x8B: takes the machine back from a pendant, where the controller hears this link meanwhile.
 struct TakeControl {};
 
 using Command = std::variant<StartJob, HoldJob, ResumeJob, StopJob, AbortJob, SendLine, SendRealtime, Unlock, Home, Jog,
-                             CancelJog, SoftReset, ChangeSettings, RecallSettings, TakeControl>;
+                             CancelJog, SoftReset, ChangeSettings, RecallSettings, TakeControl, RecallWords>;
 
 /// The names under which commands are written down, in the order of the variant.
 inline constexpr std::array<std::string_view, std::variant_size_v<Command>> kCommandNames{
     "StartJob", "HoldJob", "ResumeJob", "StopJob",   "AbortJob",       "SendLine",       "SendRealtime", "Unlock",
-    "Home",     "Jog",     "CancelJog", "SoftReset", "ChangeSettings", "RecallSettings", "TakeControl",
+    "Home",     "Jog",     "CancelJog", "SoftReset", "ChangeSettings", "RecallSettings", "TakeControl",  "RecallWords",
 };
 static_assert(!kCommandNames.back().empty(), "name the new command here, in the order of the variant");
 
@@ -112,6 +118,7 @@ BOOST_DESCRIBE_STRUCT(SoftReset, (), ())
 BOOST_DESCRIBE_STRUCT(ChangeSettings, (), (settings, reason))
 BOOST_DESCRIBE_STRUCT(RecallSettings, (), (settings, since))
 BOOST_DESCRIBE_STRUCT(TakeControl, (), ())
+BOOST_DESCRIBE_STRUCT(RecallWords, (), (words))
 
 /// Why a command was not obeyed.
 enum class Refused {

@@ -56,6 +56,13 @@ struct ControllerReset {
 };
 BOOST_DESCRIBE_STRUCT(ControllerReset, (), (reason))
 
+/// The firmware is known by a text that stays the same while it does; what it says about itself comes next, unless
+/// RecallWords gives it.
+struct FirmwareIdentified {
+  std::string identity;
+};
+BOOST_DESCRIBE_STRUCT(FirmwareIdentified, (), (identity))
+
 /// The machine does something that Kerf did not start, or a pendant has it: Kerf watches and waits.
 struct ControllerBusy {
   vocabulary::MachineState state{};
@@ -182,9 +189,9 @@ struct SettingsDrifted {
 BOOST_DESCRIBE_STRUCT(SettingsDrifted, (), (differences, sentence))
 
 using Event =
-    std::variant<LineSent, LineReceived, HandshakeMoved, HandshakeNoted, ControllerReset, ControllerBusy,
-                 ControllerFound, HandshakeFailed, StatusReported, ControllerRestarted, LinesLost, AlarmRaised,
-                 LineRefused, JobStarted, JobProgressed, JobEnded, CommandRefused, LinkSilent, LinkAnswering,
-                 SettingWritten, SettingsChanged, SettingsDrifted, PendantTookOver, PendantReleased>;
+    std::variant<LineSent, LineReceived, HandshakeMoved, HandshakeNoted, FirmwareIdentified, ControllerReset,
+                 ControllerBusy, ControllerFound, HandshakeFailed, StatusReported, ControllerRestarted, LinesLost,
+                 AlarmRaised, LineRefused, JobStarted, JobProgressed, JobEnded, CommandRefused, LinkSilent,
+                 LinkAnswering, SettingWritten, SettingsChanged, SettingsDrifted, PendantTookOver, PendantReleased>;
 
 }  // namespace kerf::session

@@ -18,6 +18,8 @@ class PasswordMask {
  public:
   /// A line of the controller may say which settings hold passwords.
   void learn_from(std::string_view line) { secrets_.learn_from(line); }
+  /// The same for a line that it said at another time.
+  void recall_from(std::string_view line) { secrets_.recall_from(line); }
   [[nodiscard]] const protocol::Secrets& secrets() const { return secrets_; }
 
   /// A line without its end.

@@ -59,6 +59,11 @@ void RecordedSession::on_closed(Instant now, LinkLoss loss) {
 }
 
 void RecordedSession::submit(Instant now, const Command& command) {
+  if (const auto* recalled = std::get_if<RecallWords>(&command)) {
+    for (const auto& answer : recalled->words.answers) {
+      for (const std::string& line : answer.lines) mask_.recall_from(line);
+    }
+  }
   if (const auto* start = std::get_if<StartJob>(&command)) {
     note_program(now, *start);
     note(now, CommandGiven{StartJob{}});

@@ -265,6 +265,7 @@ void Session::obey_handshake(Instant now, const machine::HandshakeOrder& order) 
                  },
                  [&](const machine::Remark& remark) { tell(HandshakeNoted{remark.sentence}); },
                  [&](const machine::ResetNotice& notice) { tell(ControllerReset{notice.reason}); },
+                 [&](const machine::Identified& known) { tell(FirmwareIdentified{known.identity}); },
                  [&](const machine::BusyNotice& busy) {
                    tell(ControllerBusy{.state = busy.state, .pendant = busy.pendant, .sentence = busy.sentence});
                  },

@@ -128,6 +128,7 @@ class Session {
   void obey(Instant now, const SoftReset& command);
   void obey(Instant now, const ChangeSettings& command);
   void obey(Instant now, const RecallSettings& command);
+  void obey(Instant now, const RecallWords& command);
   void obey(Instant now, const TakeControl& command);
   [[nodiscard]] std::optional<Refused> why_no_line(Instant now, std::string_view text) const;
   [[nodiscard]] std::optional<std::string> why_text_is_eaten(std::string_view text) const;

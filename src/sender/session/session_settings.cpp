@@ -71,6 +71,10 @@ void Session::obey(Instant, const RecallSettings& command) {
   if (is_ready()) tell_drift();
 }
 
+void Session::obey(Instant, const RecallWords& command) {
+  handshake_.recall(command.words);
+}
+
 void Session::tell_drift() {
   if (!recalled_ || !capabilities().complete) return;
   const RecallSettings recalled = *std::exchange(recalled_, std::nullopt);

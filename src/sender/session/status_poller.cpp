@@ -73,7 +73,12 @@ bool StatusPoller::on_report(Instant now, const ReportFacts& report) {
     between_unasked_ = unasked_at_ ? now - *unasked_at_ : kLongestAutomatic;
     unasked_at_ = now;
   }
-  if (was_asked && unanswered_ == 1) answer_time_ = now - asked_at_;
+  if (was_asked && unanswered_ == 1) {
+    answer_time_ = now - asked_at_;
+    least_answer_time_ = std::min(least_answer_time_, *answer_time_);
+    most_answer_time_ = std::max(most_answer_time_, *answer_time_);
+    ++round_trips_;
+  }
   reported_at_ = now;
   const Instant asked_at = was_asked ? asked_at_ : now;
   unanswered_since_.reset();
@@ -114,7 +119,12 @@ LinkHealth StatusPoller::health(Instant now) const {
   LinkHealth health;
   if (reported_at_) health.report_age_s = base::to_seconds(now - *reported_at_);
   if (is_silent(now)) health.silent_for_s = base::to_seconds(now - *unanswered_since_);
-  if (answer_time_) health.answer_time_s = base::to_seconds(*answer_time_);
+  if (answer_time_) {
+    health.answer_time_s = base::to_seconds(*answer_time_);
+    health.answer_time_least_s = base::to_seconds(least_answer_time_);
+    health.answer_time_most_s = base::to_seconds(most_answer_time_);
+  }
+  health.round_trips = round_trips_;
   health.ask_every_s = base::to_seconds(pendant_ ? kAskPendant : period());
   health.automatic = automatic_ > Duration{};
   return health;

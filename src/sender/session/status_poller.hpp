@@ -1,6 +1,7 @@
 #pragma once
 // When to ask for a status report, and when silence means something.
 
+#include <cstdint>
 #include <optional>
 
 #include <boost/describe.hpp>
@@ -35,11 +36,17 @@ struct LinkHealth {
   std::optional<double> silent_for_s{};
   /// Time from the last question to its report.
   std::optional<double> answer_time_s{};
+  /// The shortest and the longest such time since the machine is known.
+  std::optional<double> answer_time_least_s{};
+  std::optional<double> answer_time_most_s{};
+  std::uint32_t round_trips = 0;  ///< so many were measured
   double ask_every_s = 0;
   /// Reports come unasked.
   bool automatic = false;
 };
-BOOST_DESCRIBE_STRUCT(LinkHealth, (), (report_age_s, silent_for_s, answer_time_s, ask_every_s, automatic))
+BOOST_DESCRIBE_STRUCT(LinkHealth, (),
+                      (report_age_s, silent_for_s, answer_time_s, answer_time_least_s, answer_time_most_s, round_trips,
+                       ask_every_s, automatic))
 
 /// Asks at a pace that fits state and link while reports come, and slower while they do not; does not ask where they
 /// come by themselves. Liveness is missed answers, not port errors.
@@ -76,6 +83,9 @@ class StatusPoller {
   int unanswered_ = 0;
   std::optional<Instant> reported_at_;
   std::optional<Duration> answer_time_;
+  Duration least_answer_time_ = Duration::max();
+  Duration most_answer_time_{};
+  std::uint32_t round_trips_ = 0;
   /// Rises with reports that nobody had asked for, and falls with others.
   int unasked_ = 0;
   std::optional<Instant> unasked_at_;
