@@ -62,6 +62,7 @@ struct SettingsOptions {
   bool verbose = false;
   bool dry_run = false;
   bool force = false;
+  bool allows_motion = false;  ///< a startup line may move the machine
   io::RecordingOptions recording{};
 };
 [[nodiscard]] ExitStatus list_settings(const SettingsOptions& options);

@@ -263,6 +263,7 @@ void add_settings_changes(CLI::App& settings, Chosen& chosen,
   for (CLI::App* command : {&set, &restore}) {
     command->add_option("--reason", options->reason, "Why, for the history")->type_name("TEXT");
     command->add_flag("-n,--dry-run", options->dry_run, "Only say what would change");
+    command->add_flag("--allow-motion", options->allows_motion, "Even if a startup line moves the machine");
   }
 }
 

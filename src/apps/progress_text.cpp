@@ -62,7 +62,10 @@ std::string clock_text(double seconds) {
 }
 
 std::string position_text(const machine::Snapshot& snapshot) {
-  const auto& position = snapshot.work_position_mm ? snapshot.work_position_mm : snapshot.machine_position_mm;
+  const auto& in_mm = snapshot.work_position_mm ? snapshot.work_position_mm : snapshot.machine_position_mm;
+  const auto& unitless =
+      snapshot.work_position_unitless ? snapshot.work_position_unitless : snapshot.machine_position_unitless;
+  const auto& position = in_mm ? in_mm : unitless;
   if (!position) return {};
   std::string text;
   for (std::size_t axis = 0; axis < std::min(position->size(), vocabulary::kMaxAxes); ++axis) {
@@ -70,6 +73,7 @@ std::string position_text(const machine::Snapshot& snapshot) {
     const double value = std::abs((*position)[axis]) < 0.0005 ? 0.0 : (*position)[axis];
     text += fmt::format("{}{}{:.3f}", text.empty() ? "" : " ", vocabulary::kAxisLetters[axis], value);
   }
+  if (!in_mm) text += " (mm or inch is not known)";
   return text;
 }
 

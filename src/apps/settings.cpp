@@ -17,6 +17,7 @@
 #include "io/json.hpp"
 #include "io/settings_archive.hpp"
 #include "sender/machine/settings_text.hpp"
+#include "sender/machine/startup_line.hpp"
 
 namespace kerf::apps {
 namespace {
@@ -85,6 +86,7 @@ ExitStatus status_of(session::SettingsOutcome outcome) {
     case session::SettingsOutcome::RolledBack:
     case session::SettingsOutcome::RollbackFailed: return ExitStatus::Refused;
     case session::SettingsOutcome::Interrupted:
+    case session::SettingsOutcome::Held:
     case session::SettingsOutcome::Unanswered: return ExitStatus::Interrupted;
   }
   return ExitStatus::Interrupted;
@@ -256,12 +258,37 @@ class Change : public SettingsErrand {
       }
     }
     if (options().dry_run) return rehearse(place, settings);
+    if (const std::string danger = danger_of(place, settings); !danger.empty() && !options().allows_motion) {
+      complain(danger + " Look at it, then give --allow-motion.");
+      return ExitStatus::Usage;
+    }
     host.submit(session::ChangeSettings{.settings = std::move(settings),
                                         .reason = options().reason.empty() ? usual_reason : options().reason});
     return std::nullopt;
   }
 
  private:
+  /// A startup line that does more than set modes; Grbl runs it when it is written, and the old one when that is put
+  /// back.
+  static std::string danger_of(const Place& place, const std::vector<SettingAssignment>& settings) {
+    const auto plan = machine::plan_settings(place.machine, settings);
+    if (!plan) return {};
+    for (const machine::SettingDifference& step : plan->steps) {
+      if (!machine::is_startup_line(step.id)) continue;
+      const std::string deed = machine::deed_of_startup_line(step.after);
+      if (!deed.empty()) {
+        return fmt::format("${} would be '{}', which {} at every start and reset, and on some firmware at once.",
+                           step.id, step.after, deed);
+      }
+      const std::string old_deed = machine::deed_of_startup_line(step.before);
+      if (!old_deed.empty() && plan->steps.size() > 1) {
+        return fmt::format("${} is '{}', which {} if it has to be put back because another value is not taken.",
+                           step.id, step.before, old_deed);
+      }
+    }
+    return {};
+  }
+
   Status rehearse(const Place& place, const std::vector<SettingAssignment>& settings) {
     const auto plan = machine::plan_settings(place.machine, settings);
     if (!plan) return tell(session::invalid_settings(plan.error(), options().reason));
@@ -270,6 +297,7 @@ class Change : public SettingsErrand {
     } else {
       for (const auto& step : plan->steps) put("{}\n", machine::sentence_of(step));
       put("{} would be changed; nothing was sent.\n", plan->steps.size());
+      if (const std::string danger = danger_of(place, settings); !danger.empty()) put("{}\n", danger);
     }
     return ExitStatus::Done;
   }

@@ -95,12 +95,17 @@ Result read_state_line(StoredState& state, std::string_view line) {
   return std::unexpected(StoredStateError::Reason::UnknownLine);
 }
 
-// $110=500   or a remark
+bool is_kept_with_settings(std::string_view id) {
+  return is_setting_id(id) || id == "N0" || id == "N1";
+}
+
+// $110=500, $N0=G54   or a remark
 Result read_settings_line(StoredState& state, std::string_view line) {
   line = base::trim(line);
   if (line.empty() || line.starts_with('#') || line.starts_with(';')) return {};
   const auto equals = line.find('=');
-  if (!line.starts_with('$') || equals == std::string_view::npos || !is_setting_id(line.substr(1, equals - 1))) {
+  if (!line.starts_with('$') || equals == std::string_view::npos ||
+      !is_kept_with_settings(line.substr(1, equals - 1))) {
     return std::unexpected(StoredStateError::Reason::NotASetting);
   }
   return read_dollar_line(state, line);

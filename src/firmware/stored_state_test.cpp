@@ -38,13 +38,14 @@ TEST(StoredState, SaysWhereATextIsWrong) {
 
 TEST(StoredState, SettingsFileTakesOnlySettings) {
   StoredState state;
-  ASSERT_TRUE(apply_settings_text(state, "# my mill\r\n$110=3000\r\n\r\n; more\n $Homing/Enable=1\n"));
+  ASSERT_TRUE(apply_settings_text(state, "# my mill\r\n$110=3000\r\n\r\n; more\n $Homing/Enable=1\n$N0=G20\n"));
   EXPECT_TRUE(state.initialised);
   EXPECT_EQ(state.settings.at("110"), "3000");
   EXPECT_EQ(state.settings.at("Homing/Enable"), "1");
+  EXPECT_EQ(state.startup_lines.at(0), "G20");
 
   const StoredState before = state;
-  const auto refused = apply_settings_text(state, "$111=1\n$N0=G20\n");
+  const auto refused = apply_settings_text(state, "$111=1\n$I=mill\n");
   EXPECT_EQ(refused.error(), (StoredStateError{StoredStateError::Reason::NotASetting, 2}));
   EXPECT_EQ(state, before);
 }

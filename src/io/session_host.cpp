@@ -80,6 +80,8 @@ void SessionHost::settle() {
     write_down();  // behind the bytes: they have no time to lose
     for (const session::Event& event : outbox.events) {
       if (const auto command = keeper_.on_event(event, session_)) session_.submit(loop_.now(), *command);
+      const auto fault = keeper_.take_fault();
+      if (fault && callbacks_.noted) callbacks_.noted(*fault);
       if (const auto command = words_.on_event(event)) session_.submit(loop_.now(), *command);
       callbacks_.event(event);
     }

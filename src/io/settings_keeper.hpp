@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "io/machine_url.hpp"
 #include "io/settings_archive.hpp"
@@ -18,11 +19,15 @@ class SettingsKeeper {
   /// connection to compare with.
   [[nodiscard]] std::optional<session::Command> on_event(const session::Event& event, const session::Session& session);
 
+  /// Why a set could not be kept, in one sentence; once.
+  [[nodiscard]] std::optional<std::string> take_fault() { return std::exchange(fault_, std::nullopt); }
+
  private:
-  [[nodiscard]] std::optional<session::Command> on_found(const session::Session& session) const;
-  void keep(const session::Session& session, const std::string& reason) const;
+  [[nodiscard]] std::optional<session::Command> on_found(const session::Session& session);
+  void keep(const SettingsArchive& archive, const session::Session& session, const std::string& reason);
 
   const MachineUrl url_;
+  std::optional<std::string> fault_;
 };
 
 }  // namespace kerf::io

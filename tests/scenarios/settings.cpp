@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario.hpp"
+#include "sender/machine/startup_line.hpp"
 
 namespace kerf::scenarios {
 namespace {
@@ -69,6 +70,30 @@ TEST_P(Settings, SomebodyPressesKeysMeanwhile) {
     }
     EXPECT_TRUE(world.run_until(is_ready, 60s)) << seed;
   }
+}
+
+// Grbl runs a startup line when it is written; a change waits for the end of that, and what was there before comes back.
+TEST_P(Settings, StartupLinesBelongToTheSet) {
+  World world{quick_serial(GetParam())};
+  ASSERT_TRUE(connect(world));
+  const auto before = machine::settings_of(world.session().capabilities());
+  world.submit(session::ChangeSettings{
+      .settings = {{"N1", "G54 G17"}, {"N0", "G0 X5"}, {"110", "4321"}, {"N0", "G1 X5 F600"}}, .reason = "scenario"});
+  ASSERT_TRUE(world.run_until(is_changed, 60s));
+  const auto result = told<session::SettingsChanged>(world).back().result;
+  EXPECT_EQ(result.outcome, SettingsOutcome::Done) << result.sentence;
+  EXPECT_THAT(result.changed, SizeIs(3));
+  const auto& known = world.session().capabilities();
+  EXPECT_EQ(machine::stored_form_of(known.find_setting("N1")->value.value_or("")), "G54G17");
+  const auto sent = told<session::LineSent>(world);
+  const auto is_line = [](std::string_view text) {
+    return [text](const session::LineSent& line) { return line.text.starts_with(text); };
+  };
+  EXPECT_LT(std::ranges::find_if(sent, is_line("$110=")), std::ranges::find_if(sent, is_line("$N0=")));
+  world.submit(session::ChangeSettings{.settings = before, .reason = "back"});
+  world.run_for(60s);
+  EXPECT_EQ(told<session::SettingsChanged>(world).back().result.outcome, SettingsOutcome::Done);
+  EXPECT_EQ(world.session().capabilities().find_setting("N0")->value, "");
 }
 
 TEST_P(Settings, AMachineInMotionIsNotWrittenTo) {

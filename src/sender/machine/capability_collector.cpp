@@ -9,6 +9,7 @@
 
 #include "common/base/overloaded.hpp"
 #include "common/base/text.hpp"
+#include "sender/machine/startup_line.hpp"
 
 namespace kerf::machine {
 namespace {
@@ -92,6 +93,9 @@ void CapabilityCollector::fold(const protocol::Message& message) {
                  },
                  [&](const protocol::BuildRow& row) { fold_build_row(row); },
                  [&](const protocol::SettingValue& value) { fold_value(value); },
+                 [&](const protocol::StartupLine& line) {
+                   fold_value({.id = "N" + std::to_string(line.index), .value = line.block});
+                 },
                  [&](const protocol::StoredOffset& offset) { fold_offset(offset.name); },
                  [&](const protocol::SettingTableRow& row) { fold_table_row(row); },
                  [&](const protocol::SettingDescription& row) { helps_[row.id] = with_line_feeds(row.text); },
@@ -287,6 +291,13 @@ SettingFact CapabilityCollector::describe_from_table(const std::string& id) cons
 
 SettingFact CapabilityCollector::describe_setting(const std::string& id) const {
   SettingFact fact = describe_from_table(id);
+  if (is_startup_line(id)) {
+    fact.name = "Startup line " + id.substr(1);
+    fact.type = static_cast<int>(vocabulary::SettingType::Text);
+    fact.allow_null = true;
+    fact.help = "Runs after power-up, a reset and homing; its blocks are G-code.";
+    fact.source = fact.help_source = FactSource::Inferred;
+  }
   const int number = base::parse_int(id).value_or(-1);
   if (const auto told = definitions_.find(number); told != definitions_.end()) {
     const auto& row = told->second;

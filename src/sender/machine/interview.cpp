@@ -41,6 +41,7 @@ std::vector<std::string> Interview::questions(const CapabilityCollector& known) 
   if (enumerate_) add_enumerations(list, known);
   // Behind the descriptions: they say which values are passwords.
   list.emplace_back("$$");
+  list.emplace_back("$N");
   if (enumerate_ && !dialect.named_settings_query.empty()) list.emplace_back(dialect.named_settings_query);
   return list;
 }

@@ -72,10 +72,28 @@ void MachineModel::fold(Instant now, const protocol::Message& message) {
           [](const auto&) {},
       },
       message);
+  tell_without_units();
+}
+
+void MachineModel::tell_without_units() {
+  if (snapshot_.units_are_known) return;
+  told_ = snapshot_;
+  told_.machine_position_unitless = std::exchange(told_.machine_position_mm, std::nullopt);
+  told_.work_position_unitless = std::exchange(told_.work_position_mm, std::nullopt);
+  told_.work_offset_mm.reset();
+  told_.distance_to_go_mm.reset();
+  told_.feed_mm_per_min.reset();
+  told_.tool_length.offset_mm.reset();
+  told_.tool_length.reference_mm.reset();
+  told_.homing.home_position_mm.reset();
+  told_.offsets_mm.clear();
+  told_.probe.reset();
+  told_.modes.feed_mm_per_min.reset();
 }
 
 void MachineModel::forget() {
   snapshot_ = {};
+  told_ = {};
   report_mask_.reset();
   prompt_state_ = MachineState::Unknown;
 }
@@ -304,8 +322,12 @@ void MachineModel::fold_setting(std::string_view id, std::string_view value) {
   if (const auto mask = base::parse_int<std::uint32_t>(base::trim(value)); id == "10" && mask) report_mask_ = mask;
   const auto number = base::parse_decimal(base::trim(value));
   if (!number) return;
-  if (id == "13") set_inches(*number != 0);
-  if (id == "39") snapshot_.texts_keep_realtime = *number == 0;
+  // Rabbit's names: `$Report/Inches=1` is `$13=1`.
+  const auto match = vocabulary::find_setting(dialect_->settings, id);
+  const std::string known =
+      match && match->row->id >= 0 ? std::to_string(match->row->id + match->axis) : std::string{id};
+  if (known == "13") set_inches(*number != 0);
+  if (known == "39") snapshot_.texts_keep_realtime = *number == 0;
 }
 
 void MachineModel::set_inches(bool inches) {
@@ -403,6 +425,7 @@ void MachineModel::on_line_accepted(std::string_view line) {
   } else if (base::starts_with_ignoring_case(text, "$H") && !base::starts_with_ignoring_case(text, "$HE")) {
     note_homed(base::trim(text.substr(2)));
   }
+  tell_without_units();
 }
 
 }  // namespace kerf::machine

@@ -30,7 +30,7 @@ class MachineModel {
   /// The link is gone: nothing is known any more.
   void forget();
 
-  [[nodiscard]] const Snapshot& snapshot() const { return snapshot_; }
+  [[nodiscard]] const Snapshot& snapshot() const { return snapshot_.units_are_known ? snapshot_ : told_; }
 
  private:
   void fold_report(Instant now, const protocol::StatusReport& report);
@@ -56,7 +56,11 @@ class MachineModel {
   [[nodiscard]] std::vector<double> in_mm(std::vector<double> values) const;
   [[nodiscard]] double scale() const { return snapshot_.reports_inches ? 25.4 : 1.0; }
 
+  /// Without millimetres that may be inches; counts while the units are not known.
+  void tell_without_units();
+
   Snapshot snapshot_;
+  Snapshot told_;
   /// `$10`, where it is known.
   std::optional<std::uint32_t> report_mask_;
   /// The state in which the prompt counts.

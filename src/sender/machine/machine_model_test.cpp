@@ -26,11 +26,18 @@ using testing::ElementsAre;
 using testing::Optional;
 using vocabulary::MachineState;
 
+/// One that knows that positions are in millimetres.
+MachineModel model_in_mm() {
+  MachineModel model;
+  model.fold(Instant{}, protocol::decode("$13=0"));
+  return model;
+}
+
 class MachineModelTest : public testing::Test {
  protected:
   void hear(std::string_view line) { model_.fold(Instant{}, protocol::decode(line)); }
   const Snapshot& known() const { return model_.snapshot(); }
-  MachineModel model_;
+  MachineModel model_ = model_in_mm();
 };
 
 TEST_F(MachineModelTest, WorkPositionFollowsTheLastOffset) {
@@ -50,9 +57,23 @@ TEST_F(MachineModelTest, MachinePositionFollowsFromAWorkPosition) {
   EXPECT_THAT(known().work_position_mm, Optional(ElementsAre(0, -1, -2)));
 }
 
+TEST_F(MachineModelTest, UnitsSetByTheirNameAreSet) {
+  model_.speak(vocabulary::dialect_of(vocabulary::Firmware::Rabbit));
+  model_.on_line_accepted("$Report/Inches=1");
+  EXPECT_TRUE(known().reports_inches);
+  model_.on_line_accepted("$report/inches=0");
+  EXPECT_FALSE(known().reports_inches);
+}
+
 TEST_F(MachineModelTest, InchesBecomeMillimetres) {
-  hear("<Idle|MPos:1.000,0.000,0.000|FS:0,0|WCO:0.000,0.000,0.000>");
+  model_.forget();
+  hear("<Idle|MPos:1.000,0.000,0.000|FS:10.0,0|WCO:0.000,0.000,0.000>");
+  // Nobody has said what they mean.
+  EXPECT_FALSE(known().machine_position_mm);
+  EXPECT_FALSE(known().feed_mm_per_min);
+  EXPECT_THAT(known().machine_position_unitless, Optional(ElementsAre(1, 0, 0)));
   hear("$13=1");
+  EXPECT_FALSE(known().machine_position_unitless);
   // It was inches all the time.
   EXPECT_THAT(known().machine_position_mm, Optional(ElementsAre(DoubleNear(25.4, 1e-9), 0, 0)));
   hear("<Idle|MPos:1.0000,0.0000,0.0000|FS:10.0,0|WCO:0.0000,0.0000,0.0000>");
@@ -381,7 +402,7 @@ void check_letters(const Snapshot& known, const ReferenceFold& reference) {
 
 // Any fields in any order and number, with unknown ones, unknown letters and doubles between them.
 RC_GTEST_PROP(MachineModel, ReportsNeverChangeWhatIsKnownWrongly, ()) {
-  MachineModel model;
+  MachineModel model = model_in_mm();
   ReferenceFold reference;
   const auto reports =
       *rc::gen::container<std::vector<std::vector<Field>>>(rc::gen::container<std::vector<Field>>(any_field()));
@@ -415,7 +436,7 @@ RC_GTEST_PROP(MachineModel, OrderAndUnknownFieldsChangeNothing, ()) {
     for (const auto& part : parts) line += "|" + part;
     return line + ">";
   };
-  MachineModel expected;
+  MachineModel expected = model_in_mm();
   expected.fold(Instant{}, protocol::decode(line_of(fields)));
   std::mt19937 random{*rc::gen::arbitrary<unsigned>()};
   const auto strangers = *rc::gen::inRange(0, 5);
@@ -423,7 +444,7 @@ RC_GTEST_PROP(MachineModel, OrderAndUnknownFieldsChangeNothing, ()) {
     fields.push_back("Q" + std::to_string(number) + ":" + std::to_string(random() % 100));
   }
   std::ranges::shuffle(fields, random);
-  MachineModel shuffled;
+  MachineModel shuffled = model_in_mm();
   shuffled.fold(Instant{}, protocol::decode(line_of(fields)));
   auto snapshot = shuffled.snapshot();
   RC_ASSERT(snapshot.other_fields.size() == static_cast<std::size_t>(strangers));

@@ -10,6 +10,7 @@
 
 #include "common/base/text.hpp"
 #include "common/vocabulary/settings.hpp"
+#include "sender/machine/startup_line.hpp"
 
 namespace kerf::machine {
 namespace {
@@ -346,6 +347,7 @@ bool is_same_value(const SettingFact& setting, std::string_view left, std::strin
   left = base::trim(left);
   right = base::trim(right);
   if (left == right) return true;
+  if (is_startup_line(setting.id)) return stored_form_of(left) == stored_form_of(right);
   if (!is_known_type(setting)) return is_same_number(left, right);
   const SettingType type = type_of(setting);
   if (is_text(type)) return false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/base/text.hpp"
+#include "sender/machine/startup_line.hpp"
 
 namespace kerf::machine {
 namespace {
@@ -16,7 +17,7 @@ bool may_be_in_name(char letter) {
 
 bool is_setting_id(std::string_view id) {
   if (id.empty()) return false;
-  if (std::ranges::all_of(id, base::is_digit)) return true;
+  if (std::ranges::all_of(id, base::is_digit) || is_startup_line(id)) return true;
   return id.contains('/') && std::ranges::all_of(id, may_be_in_name);
 }
 

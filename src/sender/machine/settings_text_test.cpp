@@ -21,7 +21,8 @@ TEST(SettingsText, LinesAndRemarks) {
 
 TEST(SettingsText, AnythingElseIsNoSettingsFile) {
   EXPECT_EQ(parse_settings_text("$1=2\nG0X1\n").error(), (SettingsTextError{2, "G0X1"}));
-  EXPECT_FALSE(parse_settings_text("$N0=G54"));
+  EXPECT_TRUE(parse_settings_text("$N0=G54"));
+  EXPECT_FALSE(parse_settings_text("$I=mill"));
   EXPECT_FALSE(parse_settings_text("$I=mill"));
   EXPECT_FALSE(parse_settings_text("110=500"));
 }

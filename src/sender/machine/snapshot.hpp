@@ -223,8 +223,11 @@ struct Snapshot {
   std::optional<int> alarm_code;
   /// Only a reset helps (protocol.md 6.6).
   bool reset_required = false;
-  /// `$13` is known; before that positions are taken for millimetres.
+  /// `$13` is known; before that every `…_mm` is empty.
   bool units_are_known = false;
+  /// The positions as they were told while their unit is not known; empty afterwards.
+  std::optional<std::vector<double>> machine_position_unitless;
+  std::optional<std::vector<double>> work_position_unitless;
   /// Positions are reported in inches (`$13=1`); Kerf has already converted them.
   bool reports_inches = false;
 
@@ -252,8 +255,8 @@ BOOST_DESCRIBE_STRUCT(Snapshot, (),
                        scaled_axes, diameter_mode, input_result, work_coordinate_system, tool, tool_length, homing,
                        pendant_in_control, controller_file, card, auto_report_ms, parser_words, modes,
                        parser_state_is_old, offsets_mm, offsets_are_old, probe, probe_in_use, alarm_code,
-                       reset_required, units_are_known, reports_inches, texts_keep_realtime, messages, prompt,
-                       other_fields, reported_at, reports))
+                       reset_required, units_are_known, machine_position_unitless, work_position_unitless,
+                       reports_inches, texts_keep_realtime, messages, prompt, other_fields, reported_at, reports))
 
 inline constexpr std::size_t kMessagesKept = 20;
 

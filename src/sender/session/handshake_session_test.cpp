@@ -26,7 +26,7 @@ TEST(HandshakeSession, FreshGrblWithABannerIsNotReset) {
   talk.pass(3s);
   EXPECT_EQ(talk.session.phase(), SessionPhase::Ready);
   EXPECT_EQ(talk.count_sent('\x18'), 0U);
-  EXPECT_THAT(talk.lines_sent, ElementsAre("", "$I", "$G", "$#", "$$"));
+  EXPECT_THAT(talk.lines_sent, ElementsAre("", "$I", "$G", "$#", "$$", "$N"));
   const auto& known = talk.session.capabilities();
   EXPECT_EQ(known.firmware, "Grbl");
   EXPECT_EQ(known.version, "1.1h");
@@ -69,7 +69,7 @@ TEST(HandshakeSession, GrblHalIsEnumeratedAndNeverReset) {
   EXPECT_EQ(talk.count_sent('\x18'), 0U);
   EXPECT_EQ(talk.count_sent('\x85'), 1U);
   EXPECT_THAT(talk.lines_sent,
-              ElementsAre("", "$I+", "$G", "$#", "$EA", "$EE", "$EG", "$ES", "$ESH", "$SPINDLESH", "$$"));
+              ElementsAre("", "$I+", "$G", "$#", "$EA", "$EE", "$EG", "$ES", "$ESH", "$SPINDLESH", "$$", "$N"));
   const auto& known = talk.session.capabilities();
   EXPECT_EQ(known.family, Firmware::GrblHal);
   EXPECT_TRUE(known.has("ENUMS"));
@@ -103,7 +103,7 @@ TEST(HandshakeSession, SilentRabbitOverTcpIsAskedFirst) {
   EXPECT_EQ(known.version, "1.6.0");
   EXPECT_EQ(known.buffers.rx_usable, 255);
   EXPECT_EQ(known.buffers.rx_source, FactSource::Inferred);
-  EXPECT_THAT(talk.lines_sent, ElementsAre("", "$I", "$G", "$#", "$EA", "$EE", "$$", "$+"));
+  EXPECT_THAT(talk.lines_sent, ElementsAre("", "$I", "$G", "$#", "$EA", "$EE", "$$", "$N", "$+"));
 }
 
 TEST(HandshakeSession, RabbitIsKnownByTheShapeOfItsAnswers) {
@@ -292,7 +292,7 @@ TEST(HandshakeSession, AnErrorToAQuestionClearsTheLatchOnGrblHal) {
   talk.pass(20s);
   EXPECT_EQ(talk.session.phase(), SessionPhase::Ready);
   EXPECT_THAT(talk.lines_sent,
-              ElementsAre("", "$I+", "$G", "$#", "", "$EA", "$EE", "$EG", "$ES", "$ESH", "$SPINDLESH", "$$"));
+              ElementsAre("", "$I+", "$G", "$#", "", "$EA", "$EE", "$EG", "$ES", "$ESH", "$SPINDLESH", "$$", "$N"));
 }
 
 TEST(HandshakeSession, ClosingTheLinkEndsIt) {
@@ -312,7 +312,7 @@ TEST(HandshakeSession, AnUnaskedRestartIsToldAndIdentifiedAgain) {
   EXPECT_FALSE(talk.told<ControllerRestarted>()[0].asked);
   talk.pass(3s);
   EXPECT_EQ(talk.session.phase(), SessionPhase::Ready);
-  EXPECT_THAT(talk.lines_sent, ElementsAre("", "$I", "$G", "$#", "$$"));
+  EXPECT_THAT(talk.lines_sent, ElementsAre("", "$I", "$G", "$#", "$$", "$N"));
 }
 
 TEST(HandshakeSession, AfterAnAskedResetOnlyWhatItChangesIsAskedAgain) {

@@ -109,6 +109,9 @@ void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
                    const auto id = handshake_.collector().id_of(setting.id);
                    if (changes_settings() && id == setting.id) settings_change_->on_value(id, setting.value);
                  },
+                 [&](const protocol::StartupLine& line) {
+                   if (changes_settings()) settings_change_->on_value("N" + std::to_string(line.index), line.block);
+                 },
                  [](const auto&) {},
              },
              received.message);

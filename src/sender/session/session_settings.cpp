@@ -7,6 +7,7 @@
 #include "common/base/overloaded.hpp"
 #include "common/base/text.hpp"
 #include "sender/machine/rest.hpp"
+#include "sender/machine/startup_line.hpp"
 #include "sender/session/session.hpp"
 
 namespace kerf::session {
@@ -14,7 +15,7 @@ namespace kerf::session {
 using streaming::Purpose;
 
 std::vector<std::string> Session::settings_queries() const {
-  std::vector<std::string> queries{"$$"};
+  std::vector<std::string> queries{"$$", "$N"};
   const auto named = handshake_.collector().dialect().named_settings_query;
   if (!named.empty()) queries.emplace_back(named);
   return queries;
@@ -79,6 +80,8 @@ void Session::tell_drift() {
   if (!recalled_ || !capabilities().complete) return;
   const RecallSettings recalled = *std::exchange(recalled_, std::nullopt);
   settings_drift_ = machine::differences(capabilities(), recalled.settings, machine::settings_of(capabilities()));
+  // Sets of an older Kerf have no startup lines.
+  std::erase_if(settings_drift_, [](const auto& row) { return machine::is_startup_line(row.id) && !row.known_before; });
   if (settings_drift_.empty()) return;
   tell(SettingsDrifted{.differences = settings_drift_, .sentence = drift_sentence(settings_drift_, recalled.since)});
 }

@@ -53,7 +53,7 @@ TEST(SessionSettings, GrblIsWrittenLineByLineAndListedAtTheEnd) {
   talk.lines_sent.clear();
   const auto result = talk.change({{"20", "1"}, {"110", "600"}, {"22", "1"}});
   EXPECT_EQ(result.outcome, SettingsOutcome::Done);
-  EXPECT_THAT(talk.lines_sent, ElementsAre("$110=600", "$22=1", "$20=1", "$$"));
+  EXPECT_THAT(talk.lines_sent, ElementsAre("$110=600", "$22=1", "$20=1", "$$", "$N"));
   EXPECT_THAT(result.changed, SizeIs(3));
   EXPECT_EQ(talk.session.capabilities().find_setting("110")->value, "600");
   EXPECT_THAT(talk.told<SettingWritten>(), SizeIs(3));
@@ -66,7 +66,7 @@ TEST(SessionSettings, GrblHalIsReadBackAfterEachLine) {
   talk.lines_sent.clear();
   const auto result = talk.change({{"110", "600"}, {"481", "200"}});
   EXPECT_EQ(result.outcome, SettingsOutcome::Done);
-  EXPECT_THAT(talk.lines_sent, ElementsAre("$110=600", "$110", "$481=200", "$481", "$$"));
+  EXPECT_THAT(talk.lines_sent, ElementsAre("$110=600", "$110", "$481=200", "$481", "$$", "$N"));
   EXPECT_THAT(result.reboot_required, ElementsAre("481"));
   EXPECT_THAT(result.sentence, HasSubstr("$481"));
 }
@@ -141,6 +141,19 @@ TEST(SessionSettings, SilenceEndsIt) {
   talk.connect();
   talk.replies.answers_lines = false;
   EXPECT_EQ(talk.change({{"110", "600"}}).outcome, SettingsOutcome::Unanswered);
+}
+
+TEST(SessionSettings, SilenceInAHoldIsToldApart) {
+  SettingsTalk talk{grbl_with_homing()};
+  talk.connect();
+  talk.replies.answers_lines = false;
+  talk.submit(ChangeSettings{.settings = {{"110", "600"}}, .reason = "test"});
+  talk.replies.status = "<Hold:0|MPos:0.000,0.000,0.000|FS:0,0>\r\n";
+  talk.pass(20s);
+  ASSERT_THAT(talk.told<SettingsChanged>(), SizeIs(1));
+  const auto& result = talk.told<SettingsChanged>()[0].result;
+  EXPECT_EQ(result.outcome, SettingsOutcome::Held);
+  EXPECT_THAT(result.sentence, HasSubstr("held (Hold)"));
 }
 
 TEST(SessionSettings, AResetEndsIt) {

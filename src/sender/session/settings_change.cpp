@@ -7,6 +7,7 @@
 #include "common/vocabulary/machine_state.hpp"
 #include "sender/machine/rest.hpp"
 #include "sender/machine/setting_value.hpp"
+#include "sender/machine/startup_line.hpp"
 
 namespace kerf::session {
 namespace {
@@ -65,12 +66,20 @@ void SettingsChange::ask_for_rest(Instant now) {
 }
 
 void SettingsChange::on_report(Instant now, const machine::Snapshot& snapshot) {
+  if (asks_why_) return end_unanswered(snapshot);
   if (phase_ != Phase::AwaitingRest) return;
+  if (may_move_ && snapshot.state == vocabulary::MachineState::Run) {
+    deadline_ = now + kReportPatience;
+    return;
+  }
   if (!machine::may_store_settings(snapshot)) {
     interrupt("the machine is not at rest any more (" + std::string{vocabulary::name_of(snapshot.state)} + ")");
     return;
   }
-  write(now);
+  if (at_ < steps_.size())
+    write(now);
+  else
+    read_all(now);
 }
 
 void SettingsChange::send(Instant now, Phase phase, std::string line) {
@@ -136,7 +145,7 @@ void SettingsChange::on_answer(Instant now, int error_code, std::string_view mea
   if (error_code != 0) {
     fail(now, step, "the controller refused it: " + std::string{meaning});
   } else if (phase_ == Phase::Writing && reads_single_) {
-    send(now, Phase::ReadingOne, "$" + step.id);
+    send(now, Phase::ReadingOne, machine::is_startup_line(step.id) ? "$N" : "$" + step.id);
   } else if (phase_ == Phase::ReadingOne && !is_set(step)) {
     fail(now, step, what_it_has(step));
   } else {
@@ -149,7 +158,12 @@ void SettingsChange::go_on(Instant now) {
     orders_.emplace_back(
         NoteSetting{.difference = without_secret(steps_[at_]), .step = at_ + 1, .steps = steps_.size()});
   }
-  if (++at_ < steps_.size())
+  next_step(now);
+}
+
+void SettingsChange::next_step(Instant now) {
+  may_move_ = machine::is_startup_line(steps_[at_].id);
+  if (++at_ < steps_.size() || may_move_)
     ask_for_rest(now);
   else
     read_all(now);
@@ -173,13 +187,7 @@ void SettingsChange::fail(Instant now, const SettingDifference& step, std::strin
   const std::string label = setting == nullptr ? "$" + step.id : machine::label_of(*setting);
   result_.refused.push_back(
       {.id = step.id, .fault = machine::SettingFault::NotTaken, .sentence = label + ": " + std::move(sentence)});
-  if (rolling_back_) {
-    if (++at_ < steps_.size())
-      ask_for_rest(now);
-    else
-      read_all(now);
-    return;
-  }
+  if (rolling_back_) return next_step(now);
   // Writing may have changed more than what was asked for: only the whole list shows what has to go back.
   rolling_back_ = true;
   steps_.clear();
@@ -242,7 +250,19 @@ void SettingsChange::interrupt(std::string why) {
 
 void SettingsChange::advance_to(Instant now) {
   if (phase_ == Phase::Over || now < deadline_) return;
-  finish(SettingsOutcome::Unanswered, {});
+  if (asks_why_ || phase_ == Phase::AwaitingRest) return finish(SettingsOutcome::Unanswered, {});
+  asks_why_ = true;
+  orders_.emplace_back(AskForReport{});
+  deadline_ = now + kReportPatience;
+}
+
+/// A controller that is held answers nothing until it goes on (protocol.md 9.1).
+void SettingsChange::end_unanswered(const machine::Snapshot& snapshot) {
+  using vocabulary::MachineState;
+  const bool is_held = snapshot.state == MachineState::Hold || snapshot.state == MachineState::Door ||
+                       snapshot.state == MachineState::Tool;
+  finish(is_held ? SettingsOutcome::Held : SettingsOutcome::Unanswered,
+         is_held ? std::string{vocabulary::name_of(snapshot.state)} : std::string{});
 }
 
 std::vector<SettingDifference> SettingsChange::changed_so_far() const {
@@ -281,6 +301,11 @@ void SettingsChange::finish(SettingsOutcome outcome, std::string sentence) {
       break;
     case SettingsOutcome::Unanswered:
       result_.sentence = "The controller stopped answering while settings were written; compare before you go on.";
+      break;
+    case SettingsOutcome::Held:
+      result_.sentence = "The machine was held (" + sentence +
+                         ") while settings were written, and answers only when it goes on: resume or reset it, then "
+                         "compare.";
       break;
     default: break;
   }

@@ -26,8 +26,10 @@ enum class SettingsOutcome {
   RollbackFailed,  ///< as before, but not all values from before are back
   Interrupted,     ///< the machine was not at rest any more, restarted or went away
   Unanswered,      ///< a line stayed without an answer
+  Held,            ///< the same, because the machine was held meanwhile: it answers when it goes on
 };
-BOOST_DESCRIBE_ENUM(SettingsOutcome, Done, Unchanged, Invalid, RolledBack, RollbackFailed, Interrupted, Unanswered)
+BOOST_DESCRIBE_ENUM(SettingsOutcome, Done, Unchanged, Invalid, RolledBack, RollbackFailed, Interrupted, Unanswered,
+                    Held)
 
 /// What became of a change. `changed` is what the controller has now, as it was read back.
 struct SettingsResult {
@@ -87,11 +89,13 @@ class SettingsChange {
   void write(Instant now);
   void send(Instant now, Phase phase, std::string line);
   void go_on(Instant now);
+  void next_step(Instant now);
   void read_all(Instant now);
   void judge(Instant now);
   void fail(Instant now, const machine::SettingDifference& step, std::string sentence);
   void end_forward(Instant now);
   void end_rollback(Instant now);
+  void end_unanswered(const machine::Snapshot& snapshot);
   void finish(SettingsOutcome outcome, std::string sentence);
   [[nodiscard]] std::vector<machine::SettingDifference> changed_so_far() const;
   [[nodiscard]] std::vector<machine::SettingDifference> left_to_undo() const;
@@ -111,6 +115,10 @@ class SettingsChange {
   std::size_t query_ = 0;
   bool reads_single_;
   bool rolling_back_ = false;
+  /// Grbl runs a startup line when it is written: what moves then has to end first.
+  bool may_move_ = false;
+  /// An answer is missing, and a report is to say why.
+  bool asks_why_ = false;
   /// Values that another one pushed aside are written once more.
   bool second_pass_ = false;
   Phase phase_ = Phase::AwaitingRest;
