@@ -96,12 +96,12 @@ std::optional<ProgramFault> Program::scan_line(const ProgramLine& line, bool& ex
     if (std::ranges::any_of(words, acts_at_once)) return fault(ProgramError::RealtimeByte);
   }
   std::string form;
-  append_wire_form(form, line.text, {.keeps_messages = true, .keeps_percent = false});
+  append_wire_form(form, line.text, {.keeps_messages = true, .keeps_marks = true, .keeps_percent = false});
   if (form.size() > longest_.length) longest_ = {.length = form.size(), .number = line.number};
   if (!form.empty()) executable = true;
   if (form.size() > longest_bare_.length) {
     form.clear();
-    append_wire_form(form, line.text, {.keeps_messages = false, .keeps_percent = false});
+    append_wire_form(form, line.text, {.keeps_messages = false, .keeps_marks = false, .keeps_percent = false});
     if (form.size() > longest_bare_.length) longest_bare_ = {.length = form.size(), .number = line.number};
   }
   return std::nullopt;

@@ -15,6 +15,10 @@ bool is_plain(char letter) {
   return printable && letter != '?' && letter != '!' && letter != '~';
 }
 
+bool is_mark(char letter) {
+  return letter == '?' || letter == '!' || letter == '~';
+}
+
 bool is_for_the_operator(std::string_view comment) {
   constexpr std::array<std::string_view, 3> kStarts{"MSG,", "PRINT,", "DEBUG,"};
   return std::ranges::any_of(kStarts,
@@ -30,7 +34,7 @@ std::size_t append_comment(std::string& out, std::string_view line, std::size_t 
   if (form.keeps_messages && is_for_the_operator(base::trim(comment))) {
     out += '(';
     for (const char letter : base::trim(comment)) {
-      if (is_plain(letter)) out += letter;
+      if (is_plain(letter) || (form.keeps_marks && is_mark(letter))) out += letter;
     }
     out += ')';
   }

@@ -12,6 +12,8 @@ namespace kerf::job {
 struct WireForm {
   /// `(MSG,…)`, `(PRINT,…)` and `(DEBUG,…)` are for the operator and come back as messages.
   bool keeps_messages = false;
+  /// `?`, `!` and `~` stay in those messages: the controller was told to leave them alone there (grblHAL `$39=0`).
+  bool keeps_marks = false;
   /// A lone `%` is understood; Grbl answers it with an error, so it is left out there (protocol.md 6.3).
   bool keeps_percent = false;
 };

@@ -30,7 +30,14 @@ constexpr double kTolerance = 0.0005;
 constexpr double kNearEnd = 2.0;
 constexpr std::size_t kZ = 2;
 
-double excess_of(double target, const vocabulary::Travel& travel) {
+/// Rabbit tells where each switch is, by name only: `$X/Home/Mpos=0.000` (protocol.md 7).
+double switch_at_mm(std::size_t axis, const Capabilities& capabilities) {
+  const auto* const fact = capabilities.find_setting(std::string{vocabulary::kAxisLetters[axis]} + "/Home/Mpos");
+  if (fact == nullptr || !fact->value) return 0;
+  return base::parse_decimal(base::trim(*fact->value)).value_or(0);
+}
+
+ouble excess_of(double target, const vocabulary::Travel& travel) {
   if (target < static_cast<double>(travel.min_mm) - kTolerance) return target - static_cast<double>(travel.min_mm);
   if (target > static_cast<double>(travel.max_mm) + kTolerance) return target - static_cast<double>(travel.max_mm);
   return 0;
@@ -107,6 +114,7 @@ std::optional<vocabulary::Travel> travel_of_axis(std::size_t axis, const Capabil
   return travel_of(vocabulary::travel_rule_of(dialect.firmware),
                    {.length_mm = static_cast<float>(*length),
                     .homes_to_minus = ((bits(kHomingDirection) >> axis) & 1U) != 0,
+                    .switch_at_mm = static_cast<float>(switch_at_mm(axis, capabilities)),
                     .pull_off_mm = static_cast<float>(pull_off),
                     .zero_at_switch = ((bits(kHoming) >> kOriginZeroBit) & 1U) != 0});
 }

@@ -99,6 +99,16 @@ TEST(Explanation, GrblHalsTravelEndsAtThePullOff) {
   ASSERT_TRUE(worst_excess({{-1, 0, 0}}, machine));
 }
 
+TEST(Explanation, RabbitsTravelBeginsAtTheSwitchWhereverThatIs) {
+  auto known = with_settings({{"23", "1"}, {"130", "200"}, {"X/Home/Mpos", "-50.000"}});
+  const auto& dialect = vocabulary::dialect_of(Firmware::Rabbit);
+  const Snapshot snapshot = at_rest();
+  const MachineKnowledge machine{.dialect = dialect, .capabilities = known, .now = snapshot};
+  EXPECT_FALSE(worst_excess({{149, 0, 0}}, machine));
+  ASSERT_TRUE(worst_excess({{-52, 0, 0}}, machine));
+  EXPECT_NEAR(worst_excess({{-52, 0, 0}}, machine)->excess_mm, -2, 1e-3);
+}
+
 TEST(Explanation, AnAlarmWithoutANumberIsExplainedAllTheSame) {
   const auto told = explain_alarm({.code = 0, .before = at_rest()}, at_rest(), {});
   EXPECT_THAT(told.headline, HasSubstr("Alarm"));

@@ -8,6 +8,7 @@
 
 #include "common/base/text.hpp"
 #include "common/gcode/rules.hpp"
+#include "common/motion/arc_extent.hpp"
 #include "common/vocabulary/axis.hpp"
 
 namespace kerf::machine {
@@ -165,9 +166,18 @@ std::vector<std::vector<double>> LineTracker::targets_of(std::string_view line) 
     return targets;
   }
   std::vector<gcode::Action> actions;
+  AxisValues at = reader.state().position_mm;
   if (text.starts_with('$') || !reader.interpret(text, actions)) return targets;
   for (const gcode::Action& action : actions) {
-    if (const auto* const end = std::visit(MotionEnd{}, action)) targets.push_back(vector_of(*end, axes_));
+    const auto* const end = std::visit(MotionEnd{}, action);
+    if (end == nullptr) continue;
+    if (const auto* const arc = std::get_if<gcode::ArcMove>(&action)) {
+      for (const AxisValues& place : motion::extremes_of(motion::arc_of(*arc, at))) {
+        targets.push_back(vector_of(place, axes_));
+      }
+    }
+    targets.push_back(vector_of(*end, axes_));
+    at = *end;
   }
   return targets;
 }

@@ -110,7 +110,9 @@ void Session::begin_waiting_job(Instant now) {
 void Session::begin_job(Instant now, const StartJob& command) {
   if (dialect().error_latch) streamer_.enqueue(Purpose::ClearLatch, "");
   incidents_.start_from(snapshot(), capabilities(), dialect());
-  streamer_.feed_from(std::make_unique<ProgramLines>(command.program, job::wire_form_of(dialect())));
+  auto form = job::wire_form_of(dialect());
+  form.keeps_marks = snapshot().texts_keep_realtime.value_or(false);
+  streamer_.feed_from(std::make_unique<ProgramLines>(command.program, form));
   job_.emplace(now, *command.program, dialect().error_latch, command.timeline);
   job_state_ = job_->state();
   tell(JobStarted{command.program->name()});
