@@ -2,9 +2,10 @@
 
 import json
 import os
+import signal
 import unittest
 
-from kerf_program import DONE, PERSONALITIES, REFUSED, LiveTest, OnTerminal, VirtualMachine, kerf
+from kerf_program import DONE, PERSONALITIES, REFUSED, LiveTest, OnTerminal, Running, VirtualMachine, kerf
 
 FIRMWARES = {"grbl": "Grbl", "rabbit": "Rabbit GRBL", "grblhal": "grblHAL"}
 
@@ -62,6 +63,22 @@ class Ports(LiveTest):
                          ["virtual:grbl", "virtual:rabbit", "virtual:grblhal"])
         self.assertIsInstance(told["serial"], list)
         self.assertIn("virtual:rabbit", kerf("ports").stdout)
+
+
+    def test_the_network_is_told_of_or_why_not(self):
+        """With or without an Avahi daemon on this computer."""
+        told = json.loads(kerf("ports", "--network", "--json").stdout)
+        self.assertTrue(("announced" in told and told["announced"] is not None) != bool(told.get("not_listening")), told)
+        if told.get("not_listening"):
+            self.assertIn("avahi", told["not_listening"].lower())
+            self.assertIn(told["not_listening"], kerf("ports", "--network").stdout)
+
+    def test_watching_says_the_list_at_once_and_ends_with_ctrl_c(self):
+        with Running("ports", "--network", "--watch", "--json") as watch:
+            line = watch.wait_for(r"\{.*\}\n")[0]
+            self.assertEqual(len(json.loads(line)["virtual_machines"]), 3)
+            watch.signal(signal.SIGINT)
+            self.assertEqual(watch.wait(), DONE)
 
 
 class Verify(LiveTest):

@@ -32,6 +32,27 @@ class Recording(LiveTest):
         self.assertEqual([row["path"] for row in listed], self.logs())
         self.assertEqual(os.stat(self.logs()[0]).st_mode & 0o777, 0o600)
 
+    def test_a_log_says_who_hung_up(self):
+        kerf("info", "--machine", "virtual:grbl")
+        closed = [entry["text"] for entry in entries("--kind", "closed")]
+        self.assertEqual(len(closed), 1)
+        self.assertIn("HungUp", closed[0])
+        self.assertEqual(kerf("replay", "latest").returncode, DONE)
+
+    def test_talks_are_recorded(self):
+        talk = self.file("hello.talk", "% personality grbl\n-> $G\n<- [GC:*\n<- ok\n")
+        with VirtualMachine("grbl", speed="1") as machine:
+            held = kerf("verify", talk, "--machine", machine.url)
+        self.assertIn("1 passed", held.stdout, held.stderr)
+        self.assertIn("hello.talk", entries("--kind", "header")[0]["text"])
+        self.assertIn("$G", [entry["text"] for entry in entries("--direction", "sent")])
+        self.assertEqual(kerf("replay", "latest").returncode, DONE)
+
+    def test_info_says_that_it_is_not_recorded(self):
+        told = kerf("info", "--machine", "virtual:grbl", "--record", "/proc/nowhere")
+        self.assertEqual(told.returncode, DONE)
+        self.assertIn("not recorded", told.stderr)
+
     def test_unless_told_not_to(self):
         kerf("info", "--machine", "virtual:grbl", "--no-record")
         self.assertEqual(self.logs(), [])

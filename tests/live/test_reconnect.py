@@ -3,6 +3,9 @@
 import json
 import os
 import re
+import select
+import socket
+import threading
 import time
 import unittest
 
@@ -19,12 +22,85 @@ class Cable:
         self.options = ("--control", "unix:" + self.path, "--log", self.log)
 
     def order(self, *lines):
-        import socket
         with socket.socket(socket.AF_UNIX) as control:
             control.connect(self.path)
             control.sendall("".join(line + "\n" for line in lines).encode())
             control.settimeout(5)
             return control.recv(4096).decode()
+
+
+class Relay:
+    """Between Kerf and a machine: it can go silent, as a peer whose power is gone, and hang up."""
+
+    def __init__(self, port):
+        self.machine_port = port
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.url = "tcp://127.0.0.1:%d" % self.listener.getsockname()[1]
+        self.silent = False
+        self.pair = None
+        self.connections = 0
+        threading.Thread(target=self.serve, daemon=True).start()
+
+    def serve(self):
+        while True:
+            try:
+                sender, _ = self.listener.accept()
+            except OSError:
+                return
+            self.connections += 1
+            self.pair = (sender, socket.create_connection(("127.0.0.1", self.machine_port)))
+            self.silent = False
+            self.carry(*self.pair)
+
+    def carry(self, sender, machine):
+        while True:
+            ready, _, _ = select.select([sender, machine], [], [], 0.5)
+            for source in ready:
+                try:
+                    data = source.recv(4096)
+                except OSError:
+                    data = b""
+                if not data:
+                    sender.close()
+                    machine.close()
+                    return
+                if not self.silent:
+                    (machine if source is sender else sender).sendall(data)
+
+    def hang_up(self):
+        self.pair[0].shutdown(socket.SHUT_RDWR)
+
+    def close(self):
+        self.listener.close()
+
+
+class SilentPeer(LiveTest):
+    def test_silence_is_said_and_nothing_goes_on_by_itself(self):
+        with VirtualMachine("grblhal", speed="1") as machine:
+            relay = Relay(machine.port)
+            self.addCleanup(relay.close)
+            with OnTerminal("console", "--machine", relay.url) as console:
+                console.wait_for("Ctrl-D leaves|> ")
+                relay.silent = True
+                console.wait_for("has not answered for")
+                console.press("G91G1X5F6000\r")
+                console.wait_for("not answer")
+                relay.hang_up()
+                console.wait_for("Nothing goes on by itself")
+                wait_until(lambda: console.read(0.1) or relay.connections == 2, what="the second connection")
+                found = len(console.output)
+                wait_until(lambda: console.read(0.2) or "grblHAL" in console.output[found - 200:], what="the handshake")
+                console.press("?")
+                # What was typed into the silence was refused, not kept.
+                console.wait_for(r"<Idle\|MPos:0\.000,")
+                console.press("\x04")
+                console.wait()
+        # A log with two openings is replayed as one with a single one.
+        replayed = kerf("replay", "latest")
+        self.assertIn("The same", replayed.stdout, replayed.stderr)
+        kinds = [json.loads(line)["kind"] for line in kerf("log", "show", "latest", "--json").stdout.splitlines()]
+        self.assertEqual(kinds.count("opened"), 2)
+        self.assertEqual(kinds.count("closed"), 2)
 
 
 class Reconnect(LiveTest):

@@ -100,6 +100,25 @@ TEST(Pendant, ADeafLinkSaysHowControlComesBackAndAHoldIsSentAllTheSame) {
   EXPECT_TRUE(has_pendant(world));
 }
 
+// grblHAL obeys 0x8B from the pendant's stream only (protocol.md 1.5): whoever works the pendant gives the machine
+// back.
+TEST(Pendant, AskedForAndGivenBackInTimeIsNoRefusal) {
+  World world{with_pendant()};
+  ASSERT_TRUE(connect(world));
+  ASSERT_TRUE(world.order("pendant take"));
+  ASSERT_TRUE(world.run_until(has_pendant, 5s));
+  world.submit(session::TakeControl{});
+  world.run_for(500ms);
+  ASSERT_TRUE(world.order("pendant return"));
+  world.run_for(5s);
+  EXPECT_FALSE(has_pendant(world));
+  EXPECT_THAT(told<session::PendantReleased>(world), SizeIs(1));
+  EXPECT_THAT(told<session::CommandRefused>(world), IsEmpty());
+  const auto job = run_job(world, program("G21G90\nG0X1\n"), 1min);
+  ASSERT_TRUE(job);
+  EXPECT_EQ(job->phase, JobPhase::Finished) << job->reason;
+}
+
 TEST(Pendant, FoundInCommandIsWaitedFor) {
   World world{with_pendant()};
   ASSERT_TRUE(world.order("pendant take"));
