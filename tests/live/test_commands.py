@@ -68,7 +68,7 @@ class Ports(LiveTest):
     def test_the_network_is_told_of_or_why_not(self):
         """With or without an Avahi daemon on this computer."""
         told = json.loads(kerf("ports", "--network", "--json").stdout)
-        self.assertTrue(("announced" in told and told["announced"] is not None) != bool(told.get("not_listening")), told)
+        self.assertNotEqual(told.get("announced") is not None, told.get("not_listening") is not None, told)
         if told.get("not_listening"):
             self.assertIn("avahi", told["not_listening"].lower())
             self.assertIn(told["not_listening"], kerf("ports", "--network").stdout)

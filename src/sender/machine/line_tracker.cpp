@@ -153,6 +153,7 @@ void LineTracker::on_accepted(std::string_view line) {
   if (!understood || is_beyond) forget();
 }
 
+// Of arcs also the places where they go beyond their ends.
 std::vector<std::vector<double>> LineTracker::targets_of(std::string_view line) const {
   std::vector<std::vector<double>> targets;
   if (!interpreter_) return targets;

@@ -25,8 +25,8 @@ class LineTracker {
   /// The controller answered ok.
   void on_accepted(std::string_view line);
 
-  /// Ends of the motions that `line` asks for, and where its arcs go beyond them, machine coordinates in mm, one number
-  /// for each axis; empty where they are not known or there are none.
+  /// Ends of the motions that `line` asks for, machine coordinates in mm, one number for each axis; empty where they
+  /// are not known or there are none.
   [[nodiscard]] std::vector<std::vector<double>> targets_of(std::string_view line) const;
 
  private:
