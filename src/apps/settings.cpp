@@ -277,7 +277,7 @@ class Change : public SettingsErrand {
       if (!machine::is_startup_line(step.id)) continue;
       const std::string deed = machine::deed_of_startup_line(step.after);
       if (!deed.empty()) {
-        return fmt::format("${} would be '{}', which {} at every start and reset, and on some firmware at once.",
+        return fmt::format("${} would be '{}', which {} at every start and reset, and once when it is written.",
                            step.id, step.after, deed);
       }
       const std::string old_deed = machine::deed_of_startup_line(step.before);

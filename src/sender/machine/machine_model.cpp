@@ -391,11 +391,13 @@ void MachineModel::on_power_doubt() {
   if (snapshot_.homing.is_told) return;
   snapshot_.homing.all.reset();
   snapshot_.homing.axes.reset();
+  tell_without_units();
 }
 
 void MachineModel::on_strange_hands() {
   snapshot_.parser_state_is_old = true;
   snapshot_.offsets_are_old = true;
+  tell_without_units();
 }
 
 void MachineModel::fold_message(Instant now, std::string_view text) {

@@ -44,7 +44,7 @@ bool concerns(const Dependency& row, int id) {
 
 /// True when `earlier` has to be written before `later`.
 bool comes_before(vocabulary::Firmware firmware, const std::string& earlier, const std::string& later) {
-  // Units, limits and speeds before a line that Grbl runs when it is written.
+  // Units, limits and speeds before a line that runs when it is written.
   if (is_startup_line(later)) return !is_startup_line(earlier);
   const int first = base::parse_int(earlier).value_or(-1);
   const int second = base::parse_int(later).value_or(-1);

@@ -151,7 +151,7 @@ TEST(SessionSettings, SilenceInAHoldIsToldApart) {
   talk.replies.status = "<Hold:0|MPos:0.000,0.000,0.000|FS:0,0>\r\n";
   talk.pass(20s);
   ASSERT_THAT(talk.told<SettingsChanged>(), SizeIs(1));
-  const auto& result = talk.told<SettingsChanged>()[0].result;
+  const auto result = talk.told<SettingsChanged>()[0].result;
   EXPECT_EQ(result.outcome, SettingsOutcome::Held);
   EXPECT_THAT(result.sentence, HasSubstr("held (Hold)"));
 }

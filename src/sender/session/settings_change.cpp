@@ -144,8 +144,8 @@ void SettingsChange::on_answer(Instant now, int error_code, std::string_view mea
   const SettingDifference step = steps_[at_];
   if (error_code != 0) {
     fail(now, step, "the controller refused it: " + std::string{meaning});
-  } else if (phase_ == Phase::Writing && reads_single_) {
-    send(now, Phase::ReadingOne, machine::is_startup_line(step.id) ? "$N" : "$" + step.id);
+  } else if (phase_ == Phase::Writing && reads_single_ && !machine::is_startup_line(step.id)) {
+    send(now, Phase::ReadingOne, "$" + step.id);
   } else if (phase_ == Phase::ReadingOne && !is_set(step)) {
     fail(now, step, what_it_has(step));
   } else {
@@ -193,7 +193,10 @@ void SettingsChange::fail(Instant now, const SettingDifference& step, std::strin
   steps_.clear();
   at_ = 0;
   second_pass_ = false;
-  read_all(now);
+  if (may_move_)
+    ask_for_rest(now);
+  else
+    read_all(now);
 }
 
 void SettingsChange::end_forward(Instant now) {

@@ -115,7 +115,7 @@ class SettingsChange {
   std::size_t query_ = 0;
   bool reads_single_;
   bool rolling_back_ = false;
-  /// Grbl runs a startup line when it is written: what moves then has to end first.
+  /// Firmware runs a startup line when it is written: what moves then has to end first.
   bool may_move_ = false;
   /// An answer is missing, and a report is to say why.
   bool asks_why_ = false;
