@@ -5,10 +5,10 @@
 #include <utility>
 #include <variant>
 
+#include "common/base/content_hash.hpp"
 #include "common/base/text.hpp"
 #include "io/state_folder.hpp"
 #include "io/text_file.hpp"
-#include "sender/session/record.hpp"
 #include "sender/session/record_text.hpp"
 
 namespace kerf::io {
@@ -33,7 +33,7 @@ std::string WordsKeeper::path() const {
   const std::string& identity = listener_.words().identity;
   const std::string folder = identity.empty() ? std::string{} : state_folder();
   if (folder.empty()) return {};
-  return (fs::path(folder) / "words" / (session::hash_of(identity) + ".json")).string();
+  return (fs::path(folder) / "words" / (base::content_hash(identity) + ".json")).string();
 }
 
 std::optional<session::Command> WordsKeeper::recall() {
