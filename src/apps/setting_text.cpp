@@ -74,7 +74,8 @@ bool is_in_group(const Capabilities& machine, const SettingFact& setting, std::s
 void print_settings(const Capabilities& machine, std::vector<SettingFact> settings, bool verbose) {
   const auto rules = machine::setting_rules_of(machine);
   const auto place = [](const SettingFact& setting) {
-    return std::tuple{setting.group_id < 0 ? kLast : setting.group_id, base::parse_int(setting.id).value_or(kLast), setting.id};
+    return std::tuple{setting.group_id < 0 ? kLast : setting.group_id, base::parse_int(setting.id).value_or(kLast),
+                      setting.id};
   };
   std::ranges::sort(settings, {}, place);
   int group = -2;

@@ -72,7 +72,7 @@ TEST_P(Settings, SomebodyPressesKeysMeanwhile) {
   }
 }
 
-// Firmware runs a startup line when it is written: a change waits for the end of that. What was there before comes back.
+// Firmware runs a startup line when it is written: a change waits for its end. What was there before comes back.
 TEST_P(Settings, StartupLinesBelongToTheSet) {
   World world{quick_serial(GetParam())};
   ASSERT_TRUE(connect(world));

@@ -37,7 +37,7 @@ double switch_at_mm(std::size_t axis, const Capabilities& capabilities) {
   return base::parse_decimal(base::trim(*fact->value)).value_or(0);
 }
 
-ouble excess_of(double target, const vocabulary::Travel& travel) {
+double excess_of(double target, const vocabulary::Travel& travel) {
   if (target < static_cast<double>(travel.min_mm) - kTolerance) return target - static_cast<double>(travel.min_mm);
   if (target > static_cast<double>(travel.max_mm) + kTolerance) return target - static_cast<double>(travel.max_mm);
   return 0;
