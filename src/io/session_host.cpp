@@ -11,6 +11,11 @@ namespace {
 session::SessionOptions with_traits_of(const MachineUrl& url, session::SessionOptions options) {
   if (const auto* serial = std::get_if<SerialAddress>(&url)) options.link.baud = serial->baud;
   options.link.network = std::holds_alternative<TcpAddress>(url) || std::holds_alternative<WebSocketAddress>(url);
+  if (const auto* address = std::get_if<VirtualAddress>(&url)) {
+    // A clock that jumps is as good as endlessly fast.
+    constexpr double kJumping = 1e6;
+    options.machine_clock = address->speed.factor.value_or(kJumping);
+  }
   return options;
 }
 

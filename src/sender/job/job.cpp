@@ -54,7 +54,7 @@ void Job::order_hold(Instant now) {
 
 void Job::enter(Instant now, JobPhase phase, HoldCause cause, bool resumable) {
   state_.phase = phase;
-  state_.hold_cause = cause;
+  state_.hold_cause = cause == HoldCause::FeedHold && state_.departure ? HoldCause::OffPath : cause;
   resumable_ = resumable;
   if (phase == JobPhase::Running || phase == JobPhase::Held) hold_ordered_ = false;
   meter_.set_held(now, phase == JobPhase::Held);
@@ -239,6 +239,21 @@ void Job::on_link_closed(Instant now) {
       "executed.");
 }
 
+void Job::on_departure(Instant now, const PathDeparture& departure) {
+  if (ended() || state_.departure || state_.phase == JobPhase::Stopping) return;
+  state_.departure = departure;
+  if (state_.phase == JobPhase::Held) {
+    if (state_.hold_cause == HoldCause::FeedHold) state_.hold_cause = HoldCause::OffPath;
+    return;
+  }
+  hold(now);
+}
+
+void Job::set_executing(const ExecutingLines& lines) {
+  meter_.set_executing(lines);
+  state_.progress.executing = lines;
+}
+
 void Job::hold(Instant now) {
   if (ended() || state_.phase == JobPhase::Stopping) return;
   order_hold(now);
@@ -248,6 +263,7 @@ void Job::hold(Instant now) {
 void Job::resume(Instant now) {
   if (!can_resume()) return;
   deaf_to_hold_until_ = now + kReportAge;
+  state_.departure.reset();
   order(JobOrder::CycleStart);
   if (state_.phase == JobPhase::Held) enter(now, JobPhase::Running);
 }

@@ -58,6 +58,9 @@ class Job {
   void on_lines_lost(std::uint32_t first_file_line, std::uint32_t lines);
   void on_welcome(Instant now);
   void on_link_closed(Instant now);
+  /// The machine is not where the program says: it is held, and the operator decides.
+  void on_departure(Instant now, const PathDeparture& departure);
+  void set_executing(const ExecutingLines& lines);
 
   void hold(Instant now);
   /// Only when `can_resume` holds.

@@ -8,6 +8,7 @@
 
 #include <boost/describe.hpp>
 
+#include "sender/job/path_follower.hpp"
 #include "sender/job/progress.hpp"
 
 namespace kerf::job {
@@ -33,8 +34,8 @@ BOOST_DESCRIBE_ENUM(JobPhase, Running, Holding, Held, Draining, Stopping, Finish
 }
 
 /// Why a job stands still.
-enum class HoldCause { None, FeedHold, Door, ToolChange };
-BOOST_DESCRIBE_ENUM(HoldCause, None, FeedHold, Door, ToolChange)
+enum class HoldCause { None, FeedHold, Door, ToolChange, OffPath };
+BOOST_DESCRIBE_ENUM(HoldCause, None, FeedHold, Door, ToolChange, OffPath)
 
 /// A line that the controller refused.
 struct Refusal {
@@ -68,6 +69,8 @@ struct JobState {
   Progress progress;
   std::optional<Refusal> refusal;
   std::optional<int> alarm_code;
+  /// The machine did something else than the program says, and Kerf held it.
+  std::optional<PathDeparture> departure;
   Aftermath aftermath;
   /// After an abort or an alarm in motion the position may be wrong.
   bool position_suspect = false;
@@ -76,6 +79,7 @@ struct JobState {
   bool operator==(const JobState&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(JobState, (),
-                      (program, phase, hold_cause, progress, refusal, alarm_code, aftermath, position_suspect, reason))
+                      (program, phase, hold_cause, progress, refusal, alarm_code, departure, aftermath,
+                       position_suspect, reason))
 
 }  // namespace kerf::job

@@ -141,6 +141,13 @@ struct JobEnded {
 };
 BOOST_DESCRIBE_STRUCT(JobEnded, (), (job))
 
+/// From this line on Kerf cannot tell whether the machine keeps to the program's path.
+struct PathUnwatched {
+  std::uint32_t file_line = 0;
+  std::string sentence;
+};
+BOOST_DESCRIBE_STRUCT(PathUnwatched, (), (file_line, sentence))
+
 struct CommandRefused {
   Refused reason{};
   std::string sentence;
@@ -188,10 +195,10 @@ struct SettingsDrifted {
 };
 BOOST_DESCRIBE_STRUCT(SettingsDrifted, (), (differences, sentence))
 
-using Event =
-    std::variant<LineSent, LineReceived, HandshakeMoved, HandshakeNoted, FirmwareIdentified, ControllerReset,
-                 ControllerBusy, ControllerFound, HandshakeFailed, StatusReported, ControllerRestarted, LinesLost,
-                 AlarmRaised, LineRefused, JobStarted, JobProgressed, JobEnded, CommandRefused, LinkSilent,
-                 LinkAnswering, SettingWritten, SettingsChanged, SettingsDrifted, PendantTookOver, PendantReleased>;
+using Event = std::variant<LineSent, LineReceived, HandshakeMoved, HandshakeNoted, FirmwareIdentified, ControllerReset,
+                           ControllerBusy, ControllerFound, HandshakeFailed, StatusReported, ControllerRestarted,
+                           LinesLost, AlarmRaised, LineRefused, JobStarted, JobProgressed, JobEnded, CommandRefused,
+                           LinkSilent, LinkAnswering, SettingWritten, SettingsChanged, SettingsDrifted, PendantTookOver,
+                           PendantReleased, PathUnwatched>;
 
 }  // namespace kerf::session

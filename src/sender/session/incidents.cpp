@@ -34,7 +34,8 @@ void Incidents::forget() {
 
 void Incidents::start_from(const machine::Snapshot& snapshot, const machine::Capabilities& known,
                            const vocabulary::Dialect& dialect) {
-  if (tracker_.knows() && (snapshot.parser_state_is_old || snapshot.offsets_are_old)) return;
+  // Then what the tracker knows is newer, or nobody knows.
+  if (snapshot.parser_state_is_old || snapshot.offsets_are_old) return;
   tracker_.seed(snapshot, dialect, machine::interpreter_settings_of(known));
 }
 

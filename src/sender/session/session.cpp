@@ -32,6 +32,11 @@ streaming::SoloPolicy solo_policy_of(vocabulary::Firmware firmware) {
   }
 }
 
+/// May move the machine, or change how it reads later lines.
+bool acts(Purpose purpose) {
+  return purpose != Purpose::Question && purpose != Purpose::Setting;
+}
+
 }  // namespace
 
 Session::Session(SessionOptions options)
@@ -127,6 +132,7 @@ void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& l
     incidents_.on_accepted(*line);
   }
   if (line->purpose != Purpose::Question) refresh_.on_change(now);
+  if (has_job() && acts(line->purpose)) path_.on_answer(line->file_line, error_code);
   std::string meaning;
   if (error_code != 0) {
     const auto& known = handshake_.collector();
@@ -173,6 +179,7 @@ void Session::on_report(Instant now, MachineState before) {
       .moving = snapshot().state != MachineState::Idle && !machine::is_at_rest(snapshot()),
       .pendant = snapshot().pendant_in_control,
       .automatic = std::chrono::milliseconds{options_.automatic_reports ? snapshot().auto_report_ms.value_or(0) : 0}};
+  const std::optional<Instant> asked = poller_.asked_since();
   if (poller_.on_report(now, facts)) {
     tell(LinkAnswering{});
     refresh_.on_doubt();
@@ -188,6 +195,7 @@ void Session::on_report(Instant now, MachineState before) {
   stop_.on_snapshot(now, snapshot());
   if (!has_job()) return;
   job_->on_snapshot(now, snapshot());
+  follow_path(now, asked);
   if (has_job()) tell(JobProgressed{job_->state()});
 }
 
@@ -324,6 +332,7 @@ void Session::pump(Instant now) {
   if (is_ready() && gate_.verdict(now) != GateVerdict::Open) return;
   for (auto& line : streamer_.pump(now, outbox_.lines)) {
     if (line.purpose != Purpose::Question) gate_.on_activity(now);
+    if (has_job() && acts(line.purpose)) path_.on_sent(line.file_line, line.text);
     tell(LineSent{.purpose = line.purpose, .file_line = line.file_line, .text = std::move(line.text)});
   }
 }

@@ -16,6 +16,7 @@
 #include "sender/job/job.hpp"
 #include "sender/job/job_state.hpp"
 #include "sender/job/journal.hpp"
+#include "sender/job/path_watch.hpp"
 #include "sender/job/stop_sequence.hpp"
 #include "sender/machine/capabilities.hpp"
 #include "sender/machine/handshake.hpp"
@@ -44,9 +45,11 @@ struct SessionOptions {
   bool enumerate = true;
   /// Have the controller report by itself where it is set up to (grblHAL `$481`); else it is asked.
   bool automatic_reports = true;
+  /// Seconds of the machine's clock in one of ours: that of a virtual machine may run faster.
+  double machine_clock = 1.0;
 };
 // Complete, because a log that lacks an option cannot be replayed.
-BOOST_DESCRIBE_STRUCT(SessionOptions, (), (link, reset_policy, enumerate, automatic_reports))
+BOOST_DESCRIBE_STRUCT(SessionOptions, (), (link, reset_policy, enumerate, automatic_reports, machine_clock))
 
 /// Why the link went away.
 enum class LinkLoss {
@@ -140,6 +143,7 @@ class Session {
   void settle_everything(Instant now);
   void follow_handshake(Instant now);
   void follow_job(Instant now);
+  void follow_path(Instant now, std::optional<Instant> asked);
   void obey_handshake(Instant now, const machine::HandshakeOrder& order);
   void obey_job(Instant now, job::JobOrder order);
   void follow_stop(Instant now);
@@ -196,6 +200,7 @@ class Session {
   bool last_line_jogs_ = false;
   /// A jog was cancelled while others were owed.
   bool cancels_owed_jogs_ = false;
+  job::PathWatch path_;
   std::optional<SettingsChange> settings_change_;
   /// What the machine had at the last connection, until it was compared.
   std::optional<RecallSettings> recalled_;

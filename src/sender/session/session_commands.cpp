@@ -113,6 +113,7 @@ void Session::begin_job(Instant now, const StartJob& command) {
   auto form = job::wire_form_of(dialect());
   form.keeps_marks = snapshot().texts_keep_realtime.value_or(false);
   streamer_.feed_from(std::make_unique<ProgramLines>(command.program, form));
+  path_.begin(now, incidents_.reader(), snapshot(), capabilities(), options_.machine_clock);
   job_.emplace(now, *command.program, dialect().error_latch, command.timeline);
   job_state_ = job_->state();
   tell(JobStarted{command.program->name()});

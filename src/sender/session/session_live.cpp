@@ -119,6 +119,15 @@ void Session::follow_pendant(Instant now) {
   }
 }
 
+void Session::follow_path(Instant now, std::optional<Instant> asked) {
+  if (!has_job() || job_->state().phase == job::JobPhase::Stopping) return;
+  if (const auto departure = path_.on_report(now, asked, snapshot())) job_->on_departure(now, *departure);
+  job_->set_executing(path_.executing());
+  if (auto gap = path_.take_gap()) {
+    tell(PathUnwatched{.file_line = gap->file_line, .sentence = std::move(gap->sentence)});
+  }
+}
+
 void Session::on_alarm_state() {
   if (snapshot().state == MachineState::Alarm) {
     incidents_.on_alarm_state(snapshot().alarm_code.value_or(0), snapshot());

@@ -57,6 +57,7 @@ void Session::obey(Instant now, const ResumeJob&) {
     refuse(Refused::NotAtRest);
     return;
   }
+  if (has_job() && job_->state().departure) path_.on_overruled();
   if (has_job())
     job_->resume(now);
   else

@@ -60,6 +60,10 @@ class StatusPoller {
   /// A report came in. True when it ends a silence that was told.
   bool on_report(Instant now, const ReportFacts& report);
 
+  /// The next report is made later than this; empty where reports come unasked.
+  [[nodiscard]] std::optional<Instant> asked_since() const {
+    return automatic_ == Duration{} ? unanswered_since_ : std::nullopt;
+  }
   [[nodiscard]] bool is_due(Instant now) const { return now >= ask_at_; }
   /// Seconds without an answer, once for each silence, when it has lasted long enough to be told.
   [[nodiscard]] std::optional<double> take_silence(Instant now);

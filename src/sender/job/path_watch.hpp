@@ -1,0 +1,53 @@
+#pragma once
+// Compares what the machine does with the program while a job runs.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/base/time.hpp"
+#include "common/gcode/interpreter.hpp"
+#include "sender/job/executing_lines.hpp"
+#include "sender/job/path_follower.hpp"
+#include "sender/job/path_forecast.hpp"
+#include "sender/machine/capabilities.hpp"
+#include "sender/machine/snapshot.hpp"
+
+namespace kerf::job {
+
+/// Where the path is not watched, and why: one sentence.
+struct PathGap {
+  std::uint32_t file_line = 0;
+  std::string sentence;
+};
+
+/// Told of every line that is sent and answered and of every report; says when the machine leaves the path, and which
+/// lines it may be executing. Memory and time do not grow with the length of the job.
+class PathWatch {
+ public:
+  /// `reader` stands where the last line leads; empty where that is not known. `clock`: seconds of the machine's clock
+  /// in one of ours.
+  void begin(Instant now, const std::optional<gcode::Interpreter>& reader, const machine::Snapshot& snapshot,
+             const machine::Capabilities& known, double clock);
+  void on_sent(std::uint32_t file_line, std::string_view text);
+  /// The oldest line that was told and not answered is answered.
+  void on_answer(std::uint32_t file_line, int error_code);
+  /// `asked`: when the question went out that this report answers, the earliest one if there were several.
+  [[nodiscard]] std::optional<PathDeparture> on_report(Instant now, std::optional<Instant> asked,
+                                                       const machine::Snapshot& snapshot);
+  /// The operator goes on although the machine is not where the program says.
+  void on_overruled();
+
+  [[nodiscard]] ExecutingLines executing() const { return follower_.executing(forecast_); }
+  /// Once for each job that is not watched to its end.
+  [[nodiscard]] std::optional<PathGap> take_gap();
+
+ private:
+  PathForecast forecast_;
+  PathFollower follower_;
+  bool tells_work_position_ = false;
+  bool gap_told_ = false;
+};
+
+}  // namespace kerf::job
