@@ -45,34 +45,53 @@ asio::io_context& EventLoop::context() {
   return state_->context;
 }
 
-/// A handler that is already queued when its owner dies or re-arms still runs; the generation tells it to do nothing.
-struct Timer::State {
+/// A stream of bytes arms its timer anew thousands of times a second, mostly for the same or a later moment. The system
+/// is told only of an earlier one: a wait that ends too early begins anew.
+struct Timer::State : std::enable_shared_from_this<Timer::State> {
   explicit State(EventLoop& owner) : loop(owner), timer(owner.context()) {}
+
+  void wait_until(Instant at) {
+    waits_until = at;
+    timer.expires_after(at - loop.now());
+    timer.async_wait([self = shared_from_this(), mine = ++waits](boost::system::error_code) {
+      // One that was replaced may be queued already.
+      if (self->waits == mine) self->wake();
+    });
+  }
+
+  void wake() {
+    waits_until = kNever;
+    if (wanted_at == kNever) return;
+    if (loop.now() < wanted_at) return wait_until(wanted_at);
+    wanted_at = kNever;
+    const auto running = std::exchange(callback, nullptr);
+    running();
+  }
+
   EventLoop& loop;
   asio::steady_timer timer;
-  std::uint64_t generation = 0;
+  std::function<void()> callback;
+  Instant wanted_at = kNever;
+  Instant waits_until = kNever;
+  std::uint64_t waits = 0;
 };
 
 Timer::Timer(EventLoop& loop) : state_(std::make_shared<State>(loop)) {}
 Timer::~Timer() {
   disarm();
+  state_->timer.cancel();
 }
 
 void Timer::arm(Instant at, std::function<void()> callback) {
-  const std::uint64_t generation = ++state_->generation;
-  if (at == kNever) {
-    state_->timer.cancel();
-    return;
-  }
-  state_->timer.expires_after(at - state_->loop.now());
-  state_->timer.async_wait([state = state_, generation, callback = std::move(callback)](boost::system::error_code) {
-    if (state->generation == generation) callback();
-  });
+  if (at == kNever) return disarm();
+  state_->wanted_at = at;
+  state_->callback = std::move(callback);
+  if (at < state_->waits_until) state_->wait_until(at);
 }
 
 void Timer::disarm() {
-  ++state_->generation;
-  state_->timer.cancel();
+  state_->wanted_at = kNever;
+  state_->callback = nullptr;
 }
 
 struct SignalWatch::State : std::enable_shared_from_this<SignalWatch::State> {
