@@ -9,8 +9,7 @@
 #include "apps/job_runner.hpp"
 #include "apps/job_view.hpp"
 #include "apps/terminal.hpp"
-#include "io/text_file.hpp"
-#include "sender/job/program.hpp"
+#include "io/program_file.hpp"
 
 namespace kerf::apps {
 namespace {
@@ -31,15 +30,14 @@ ExitStatus run(const RunOptions& options) {
   };
   const auto url = io::parse_machine_url(options.machine);
   if (!url) return refuse(io::explain(url.error()));
-  auto text = io::read_text_file(options.file);
-  if (!text) return refuse(io::explain(text.error(), options.file));
-  auto program = job::Program::load(options.file, *std::move(text));
-  if (!program) return refuse(job::describe(program.error(), options.file));
+  auto file = io::ProgramFile::load(options.file);
+  if (!file) return refuse(io::explain(file.error(), options.file));
 
   io::EventLoop loop;
+  file->save_memory(loop);
   const bool can_ask = !options.json && is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO);
   std::error_code ignored;
-  JobRunner runner(loop, *url, *std::move(program), *view, can_ask,
+  JobRunner runner(loop, *url, file->program(), *view, can_ask,
                    {.path = std::filesystem::absolute(options.file, ignored).string()});
   return runner.run(options.recording);
 }

@@ -47,6 +47,7 @@ FileError file_error(int error_number) {
   if (error_number == ENOENT || error_number == ENOTDIR) fault = FileFault::NotFound;
   if (error_number == EACCES || error_number == EPERM || error_number == EROFS) fault = FileFault::NoPermission;
   if (error_number == EISDIR) fault = FileFault::IsDirectory;
+  if (error_number == ENOSPC || error_number == EDQUOT) fault = FileFault::NoRoom;
   return {.fault = fault, .system_text = std::generic_category().message(error_number)};
 }
 
@@ -92,6 +93,9 @@ std::string explain(const FileError& error, std::string_view path) {
       return "You may not use '" + name + "': change its permissions, or copy it elsewhere.";
     case FileFault::IsDirectory: return "'" + name + "' is a folder: name a file in it.";
     case FileFault::NotAFile: return "'" + name + "' is a device, not a file: name a file.";
+    case FileFault::NoRoom: return "The disk has no room for '" + name + "': make room, then try again.";
+    case FileFault::Changing:
+      return "'" + name + "' is being written to: wait until the program that makes it has finished, then try again.";
     case FileFault::Failed: break;
   }
   return "'" + name + "' cannot be used (" + error.system_text + "): check the disk, or copy the file elsewhere.";

@@ -7,7 +7,7 @@
 
 namespace kerf::io {
 
-enum class FileFault { NotFound, NoPermission, IsDirectory, NotAFile, Failed };
+enum class FileFault { NotFound, NoPermission, IsDirectory, NotAFile, NoRoom, Changing, Failed };
 
 struct FileError {
   FileFault fault{};

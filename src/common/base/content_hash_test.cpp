@@ -19,5 +19,16 @@ TEST(ContentHash, TellsOneByteFromAnother) {
   EXPECT_EQ(content_hash(text).size(), 32U);
 }
 
+TEST(ContentHash, IsTheSameInPieces) {
+  std::string text;
+  for (int line = 0; line < 1000; ++line) text += "G1X" + std::to_string(line) + "\n";
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{100}, std::size_t{4096}, text.size()}) {
+    ContentHash hash;
+    for (std::size_t at = 0; at < text.size(); at += piece) hash.add(std::string_view{text}.substr(at, piece));
+    EXPECT_EQ(hash.digits(), content_hash(text));
+  }
+  EXPECT_EQ(ContentHash().digits(), content_hash(""));
+}
+
 }  // namespace
 }  // namespace kerf::base

@@ -10,7 +10,9 @@ namespace kerf::protocol {
 std::vector<ReceivedMessage> MessageReader::read(std::string_view bytes) {
   std::vector<ReceivedMessage> out;
   while (!bytes.empty()) {
-    const std::size_t end = bytes.find_first_of("\r\n");
+    const auto* const line_end = std::ranges::find_if(bytes, [](char byte) { return byte == '\r' || byte == '\n'; });
+    const std::size_t end =
+        line_end == bytes.end() ? std::string_view::npos : static_cast<std::size_t>(line_end - bytes.begin());
     const std::string_view part = bytes.substr(0, end);
     const std::size_t taken = std::min(part.size(), kLongestLine - pending_.size());
     pending_.append(part.substr(0, taken));

@@ -12,6 +12,8 @@
 
 #include <boost/describe.hpp>
 
+#include "common/base/content_hash.hpp"
+
 namespace kerf::job {
 
 /// Why a text is no program.
@@ -67,7 +69,7 @@ class Program {
 
   /// The line that begins at `offset_bytes`, numbered `number`; empty at the end of the text.
   [[nodiscard]] std::optional<ProgramLine> line_at(std::size_t offset_bytes, std::uint32_t number) const;
-  /// Line `number` (from 1); empty when there is none. Costs a walk over at most kIndexStep lines.
+  /// Line `number` (from 1); empty when there is none. Costs a walk over the lines between two entries of the index.
   [[nodiscard]] std::optional<ProgramLine> line(std::uint32_t number) const;
   /// Offset of the line after `line`.
   [[nodiscard]] std::size_t offset_after(const ProgramLine& line) const;
@@ -75,22 +77,55 @@ class Program {
   /// Longest line as sent with (`true`) or without `(MSG,…)` comments.
   [[nodiscard]] LongestLine longest_line(bool with_messages) const { return with_messages ? longest_ : longest_bare_; }
 
-  static constexpr std::uint32_t kIndexStep = 256;
+  /// The index begins with an entry for every so many lines…
+  static constexpr std::uint32_t kFirstIndexStep = 256;
+  /// …and has no more entries than this: memory must not grow with the file, so entries of a long one lie further
+  /// apart.
+  static constexpr std::size_t kMostIndexEntries = 16'384;
 
  private:
+  friend class ProgramReader;
   Program() = default;
-  [[nodiscard]] std::optional<ProgramFault> scan();
-  [[nodiscard]] std::optional<ProgramFault> scan_line(const ProgramLine& line, bool& executable);
+  void add_to_index(const ProgramLine& line);
 
   std::string name_;
   std::shared_ptr<const void> owner_;
   std::string_view text_;
   std::string hash_;
   std::uint32_t line_count_ = 0;
-  /// Offset of every kIndexStep-th line: a file of a gigabyte must not cost an index of its own size.
+  /// Offset of every index_step_-th line.
   std::vector<std::size_t> index_;
+  std::uint32_t index_step_ = kFirstIndexStep;
   LongestLine longest_;
   LongestLine longest_bare_;
+};
+
+/// Reads a text into a Program piece by piece, so that whoever owns a long one can show how far it is, and give back
+/// the memory of what was read.
+class ProgramReader {
+ public:
+  /// `owner` keeps `text` alive.
+  ProgramReader(std::string name, std::shared_ptr<const void> owner, std::string_view text);
+
+  /// Reads lines until `most_bytes` more have been read; false when nothing is left to read, or a fault was found.
+  bool read_on(std::size_t most_bytes);
+  /// The whole program, once read_on() gave false.
+  [[nodiscard]] std::expected<std::shared_ptr<const Program>, ProgramFault> finish();
+
+ private:
+  [[nodiscard]] std::optional<ProgramFault> read_line(const ProgramLine& line);
+  void measure(const ProgramLine& line);
+  void hash_until(std::size_t bytes_of_whole);
+
+  std::shared_ptr<Program> program_;
+  /// With what does not count as program: byte order mark and end mark.
+  std::string_view whole_;
+  std::size_t hashed_bytes_ = 0;
+  base::ContentHash hash_;
+  std::size_t offset_bytes_ = 0;
+  bool is_executable_ = false;
+  std::optional<ProgramFault> fault_;
+  std::string form_;
 };
 
 }  // namespace kerf::job

@@ -48,6 +48,35 @@ TEST(Program, FindsLinesThroughTheSparseIndex) {
   }
 }
 
+TEST(Program, TheIndexOfALongFileStaysSmall) {
+  std::string text;
+  constexpr std::uint32_t kLines = Program::kMostIndexEntries * Program::kFirstIndexStep * 2 + 100;
+  for (std::uint32_t number = 1; number <= kLines; ++number) text += number % 2 == 0 ? "X2\n" : "Y\n";
+  const auto program = load(text);
+  EXPECT_EQ(program->line_count(), kLines);
+  for (const std::uint32_t number : {1U, 256U, kLines / 2, kLines / 2 + 1, kLines - 1, kLines}) {
+    EXPECT_EQ(program->line(number)->text, number % 2 == 0 ? "X2" : "Y");
+    EXPECT_EQ(program->line(number)->offset_bytes, (number - 1) / 2 * 5 + (number % 2 == 0 ? 2 : 0));
+  }
+}
+
+RC_GTEST_PROP(Program, IsTheSameHoweverItIsRead, (std::size_t piece)) {
+  const auto letters =
+      rc::gen::container<std::string>(rc::gen::element('G', 'X', '1', ' ', '\r', '\n', '(', ')', ';', '%'));
+  const std::string text = "G0\n" + *letters;
+  ProgramReader reader("part.nc", nullptr, text);
+  while (reader.read_on(piece % 7 + 1)) {
+  }
+  const auto in_pieces = reader.finish();
+  const auto whole = Program::load("part.nc", text);
+  RC_ASSERT(in_pieces.has_value());
+  RC_ASSERT((*in_pieces)->line_count() == (*whole)->line_count());
+  for (const bool with_messages : {true, false}) {
+    RC_ASSERT((*in_pieces)->longest_line(with_messages).length == (*whole)->longest_line(with_messages).length);
+    RC_ASSERT((*in_pieces)->longest_line(with_messages).number == (*whole)->longest_line(with_messages).number);
+  }
+}
+
 TEST(Program, RefusesWhatIsNoProgram) {
   EXPECT_EQ(fault_of("").error, ProgramError::Empty);
   EXPECT_EQ(fault_of("(only a comment)\n\n%\n").error, ProgramError::Empty);

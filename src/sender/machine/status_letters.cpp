@@ -145,6 +145,12 @@ LineEffect effect_of(std::string_view line) {
   const std::string_view text = base::trim(line);
   if (text.empty() || text == "%") return {};
   LineEffect effect{.parser_state = !text.starts_with('$'), .offsets = false};
+  // Most lines of a job have none of the letters that these words begin with.
+  const bool may_have_word = std::ranges::any_of(text, [](char letter) {
+    const char upper = base::to_upper(letter);
+    return upper == 'G' || upper == 'M' || upper == '$';
+  });
+  if (!may_have_word) return effect;
   effect.offsets = std::ranges::any_of(kOffsetWords, [&](auto word) { return contains_ignoring_case(text, word); });
   if (base::starts_with_ignoring_case(text, "$RST=")) effect = {.parser_state = true, .offsets = true};
   // Homing Z clears grblHAL's tool length reference.

@@ -8,6 +8,11 @@ namespace kerf::session {
 namespace {
 
 constexpr std::string_view kLineEnds = "\r\n";
+/// A setting begins with a dollar, a command of ESP3D with a bracket.
+bool may_hold_secret(std::string_view text) {
+  return text.contains('$') || text.contains('[');
+}
+
 constexpr std::string_view kDigits = "0123456789abcdefghijklmnopqrstuvwxyz";
 
 }  // namespace
@@ -39,7 +44,7 @@ std::string PasswordMask::masked_line(std::string_view line) {
 }
 
 std::string PasswordMask::masked_text(std::string_view text) {
-  if (text.find_first_of("$[") == std::string_view::npos) return std::string(text);
+  if (!may_hold_secret(text)) return std::string(text);
   std::string shown;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find_first_of(kLineEnds), text.size());
@@ -51,6 +56,10 @@ std::string PasswordMask::masked_text(std::string_view text) {
 }
 
 std::string StreamMask::push(std::string_view bytes, PasswordMask& mask) {
+  // Whole lines such as "ok", thousands a second.
+  const bool are_whole =
+      line_.empty() && bytes.ends_with('\n') && bytes.size() <= protocol::MessageReader::kLongestLine;
+  if (are_whole && !may_hold_secret(bytes)) return std::string(bytes);
   std::string out;
   while (!bytes.empty()) {
     const std::size_t end = bytes.find_first_of(kLineEnds);

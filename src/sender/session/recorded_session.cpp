@@ -102,6 +102,10 @@ void RecordedSession::settle(Instant now) {
   for (job::JournalRecord& record : journal_.take_records()) waiting_.journal.push_back(std::move(record));
   waiting_.realtime += out.realtime;
   waiting_.lines += out.lines;
+  if (waiting_.events.empty()) {
+    waiting_.events = std::move(out.events);
+    return;
+  }
   waiting_.events.insert(waiting_.events.end(), std::make_move_iterator(out.events.begin()),
                          std::make_move_iterator(out.events.end()));
 }

@@ -17,6 +17,7 @@ std::string_view number_after(std::string_view text, std::size_t at) {
 
 // `G10L20P1X0Y0`
 bool writes_stored_offset(std::string_view text) {
+  if (!text.contains('G') && !text.contains('g')) return false;  // most lines of a job
   for (std::size_t at = 0; at < text.size(); ++at) {
     if (text[at] == '(' || text[at] == ';') return false;
     if (base::to_upper(text[at]) != 'G') continue;

@@ -1,0 +1,197 @@
+#include "io/program_file.hpp"
+
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <linux/fs.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "io/state_folder.hpp"
+
+namespace kerf::io {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// So much of a mapped file is in memory at once while it is read.
+constexpr std::size_t kPieceBytes = std::size_t{4} << 20U;
+constexpr Duration kGiveBackEvery = 100ms;
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int get() const { return number_; }
+  [[nodiscard]] bool is_open() const { return number_ >= 0; }
+
+ private:
+  int number_;
+};
+
+std::unexpected<ProgramFileError> failed(FileError error) {
+  return std::unexpected<ProgramFileError>(std::move(error));
+}
+
+/// A file without a name where large files may be: /tmp is often memory.
+int open_nameless() {
+  std::string folder = state_folder();
+  if (folder.empty()) folder = "/var/tmp";
+  const int opened = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (opened >= 0 || (errno != EOPNOTSUPP && errno != EISDIR)) return opened;
+  std::string name = (std::filesystem::path(folder) / "program-XXXXXX").string();
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named >= 0) ::unlink(name.c_str());
+  return named;
+}
+
+/// With a buffer of our own, for what the kernel cannot copy by itself (a pipe). The system's fault, 0 if none.
+int copy_by_hand(int from, int to) {
+  std::vector<char> piece(std::size_t{1} << 16U);
+  for (;;) {
+    const ssize_t got = ::read(from, piece.data(), piece.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return errno;
+    if (got == 0) return 0;
+    for (std::string_view rest(piece.data(), static_cast<std::size_t>(got)); !rest.empty();) {
+      const ssize_t put = ::write(to, rest.data(), rest.size());
+      if (put < 0 && errno == EINTR) continue;
+      if (put <= 0) return put < 0 ? errno : ENOSPC;
+      rest.remove_prefix(static_cast<std::size_t>(put));
+    }
+  }
+}
+
+/// The system's fault, 0 if none.
+int copy_file(int from, int to) {
+  if (::ioctl(to, FICLONE, from) == 0) return 0;
+  constexpr std::size_t kAtOnce = std::size_t{64} << 20U;
+  for (;;) {
+    const ssize_t count = ::copy_file_range(from, nullptr, to, nullptr, kAtOnce, 0);
+    if (count > 0) continue;
+    // What is left, if anything, goes by hand: both descriptors stand where this stopped.
+    if (count == 0 || errno == EXDEV || errno == EINVAL || errno == ENOSYS || errno == EOPNOTSUPP || errno == EBADF) {
+      return copy_by_hand(from, to);
+    }
+    if (errno != EINTR) return errno;
+  }
+}
+
+bool is_same_state(const struct stat& before, const struct stat& after) {
+  return before.st_size == after.st_size && before.st_mtim.tv_sec == after.st_mtim.tv_sec &&
+         before.st_mtim.tv_nsec == after.st_mtim.tv_nsec;
+}
+
+}  // namespace
+
+/// A file of ours in the address space.
+class ProgramFile::Mapping {
+ public:
+  Mapping(int descriptor, std::size_t bytes)
+      : start_(::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, descriptor, 0)), bytes_(bytes) {
+    if (is_good()) ::madvise(start_, bytes_, MADV_SEQUENTIAL);
+  }
+  ~Mapping() {
+    if (is_good()) ::munmap(start_, bytes_);
+  }
+  Mapping(const Mapping&) = delete;
+  Mapping& operator=(const Mapping&) = delete;
+
+  [[nodiscard]] bool is_good() const { return start_ != MAP_FAILED; }
+  [[nodiscard]] std::string_view text() const { return {static_cast<const char*>(start_), bytes_}; }
+  void give_back() const { ::madvise(start_, bytes_, MADV_DONTNEED); }
+
+ private:
+  void* start_;
+  std::size_t bytes_;
+};
+
+std::string explain(const ProgramFileError& error, std::string_view path) {
+  if (const auto* fault = std::get_if<job::ProgramFault>(&error)) return job::describe(*fault, path);
+  return explain(std::get<FileError>(error), path);
+}
+
+struct ProgramFile::Saver {
+  Saver(EventLoop& owner, std::shared_ptr<const Mapping> what) : loop(owner), timer(owner), mapping(std::move(what)) {}
+  void wait() {
+    timer.arm(loop.now() + kGiveBackEvery, [this] {
+      mapping->give_back();
+      wait();
+    });
+  }
+
+  EventLoop& loop;
+  Timer timer;
+  std::shared_ptr<const Mapping> mapping;
+};
+
+void ProgramFile::SaverEnd::operator()(Saver* saver) const {
+  delete saver;
+}
+
+std::expected<ProgramFile, ProgramFileError> ProgramFile::load(const std::string& path) {
+  const Descriptor original(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
+  struct stat before{};
+  if (!original.is_open() || ::fstat(original.get(), &before) != 0) return failed(file_error(errno));
+  // What is neither file nor pipe is refused there.
+  const bool is_file = S_ISREG(before.st_mode);
+  if (!is_file && !S_ISFIFO(before.st_mode)) return held(path);
+  if (is_file && std::cmp_less_equal(before.st_size, kMostHeldBytes)) return held(path);
+  const Descriptor copy(open_nameless());
+  if (!copy.is_open()) return failed(file_error(errno));
+  if (const int error_number = copy_file(original.get(), copy.get()); error_number != 0) {
+    return failed(file_error(error_number));
+  }
+  struct stat after{};
+  if (is_file && (::fstat(original.get(), &after) != 0 || !is_same_state(before, after))) {
+    return failed({.fault = FileFault::Changing, .system_text = {}});
+  }
+  return mapped(path, copy.get());
+}
+
+std::expected<ProgramFile, ProgramFileError> ProgramFile::held(const std::string& path) {
+  auto text = read_text_file(path);
+  if (!text) return failed(std::move(text.error()));
+  auto program = job::Program::load(path, *std::move(text));
+  if (!program) return std::unexpected<ProgramFileError>(std::move(program.error()));
+  ProgramFile file;
+  file.program_ = *std::move(program);
+  return file;
+}
+
+std::expected<ProgramFile, ProgramFileError> ProgramFile::mapped(const std::string& path, int copy) {
+  struct stat copied{};
+  if (::fstat(copy, &copied) != 0) return failed(file_error(errno));
+  if (copied.st_size == 0) return std::unexpected<ProgramFileError>(job::ProgramFault{});
+  const auto mapping = std::make_shared<const Mapping>(copy, static_cast<std::size_t>(copied.st_size));
+  if (!mapping->is_good()) return failed(file_error(errno));
+  job::ProgramReader reader(path, mapping, mapping->text());
+  while (reader.read_on(kPieceBytes)) mapping->give_back();
+  mapping->give_back();
+  auto program = reader.finish();
+  if (!program) return std::unexpected<ProgramFileError>(std::move(program.error()));
+  ProgramFile file;
+  file.mapping_ = mapping;
+  file.program_ = *std::move(program);
+  return file;
+}
+
+void ProgramFile::save_memory(EventLoop& loop) {
+  if (!mapping_) return;
+  saver_.reset(new Saver(loop, mapping_));
+  saver_->wait();
+}
+
+}  // namespace kerf::io
