@@ -64,6 +64,7 @@ std::string_view sentence_of(LinkLoss loss) {
     case LinkLoss::Closed: return "The other end closed the link.";
     case LinkLoss::Unplugged: return "The cable was unplugged or the device went away.";
     case LinkLoss::TimedOut: return "The link was given up: nothing came any more.";
+    case LinkLoss::HungUp: return "Kerf itself closed the link.";
     case LinkLoss::Error: break;
   }
   return "The link failed.";

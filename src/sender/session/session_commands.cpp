@@ -69,7 +69,8 @@ void Session::obey(Instant now, const StartJob& command) {
     refuse(*reason);
     return;
   }
-  const JobFeed feed{command.program, dialect(), capabilities().features.tool_change, command.options};
+  const JobFeed feed{command.program, dialect(), snapshot().texts_keep_realtime.value_or(false),
+                     capabilities().features.tool_change, command.options};
   const auto longest = command.program->longest_line(feed.form().keeps_messages);
   if (longest.length > longest_line_taken()) {
     refuse(Refused::LineTooLong, command.program->name() + ", line " + std::to_string(longest.number) + " has " +
