@@ -22,6 +22,14 @@ struct RunOptions {
 };
 [[nodiscard]] ExitStatus run(const RunOptions& options);
 
+/// `kerf resume`.
+struct ResumeOptions {
+  bool list = false;  ///< only say which jobs could be resumed
+  bool json = false;
+  io::JournalOptions journal{};
+};
+[[nodiscard]] ExitStatus resume(const ResumeOptions& options);
+
 struct VirtualOptions {
   std::string personality = "grblhal";
   std::vector<std::string> listen;  ///< one for all machines, or one each

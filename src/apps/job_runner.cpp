@@ -57,8 +57,14 @@ std::string_view held_sentence(job::HoldCause cause) {
 }  // namespace
 
 JobRunner::JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<const job::Program> program,
-                     JobView& view, bool can_ask)
-    : loop_(loop), url_(std::move(url)), program_(std::move(program)), view_(view), can_ask_(can_ask), redraw_(loop) {}
+                     JobView& view, bool can_ask, job::JobOrigin origin)
+    : loop_(loop),
+      url_(std::move(url)),
+      program_(std::move(program)),
+      origin_(std::move(origin)),
+      view_(view),
+      can_ask_(can_ask),
+      redraw_(loop) {}
 
 ExitStatus JobRunner::run(const io::RecordingOptions& recording) {
   constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
@@ -83,7 +89,8 @@ void JobRunner::on(const session::ControllerFound& found) {
   if (is_started_) return;
   const auto& capabilities = host_->session().capabilities();
   view_.found(found.sentence, capabilities);
-  host_->submit(session::StartJob{program_, rehearse(*program_, capabilities, clock_speed(url_))});
+  host_->submit(session::StartJob{
+      .program = program_, .timeline = rehearse(*program_, capabilities, clock_speed(url_)), .origin = origin_});
 }
 
 void JobRunner::on(const session::ControllerReset& reset) {

@@ -14,9 +14,9 @@ namespace kerf::apps {
 
 class JobRunner {
  public:
-  /// `can_ask`: there is a terminal whose keys answer questions.
+  /// `can_ask`: there is a terminal whose keys answer questions. `origin` is for the journal.
   JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<const job::Program> program, JobView& view,
-            bool can_ask);
+            bool can_ask, job::JobOrigin origin);
 
   /// Runs the event loop until the job has ended.
   [[nodiscard]] ExitStatus run(const io::RecordingOptions& recording);
@@ -55,6 +55,7 @@ class JobRunner {
   io::EventLoop& loop_;
   const io::MachineUrl url_;
   std::shared_ptr<const job::Program> program_;
+  const job::JobOrigin origin_;
   JobView& view_;
   const bool can_ask_;
   std::optional<ExitStatus> status_;

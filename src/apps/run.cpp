@@ -1,4 +1,6 @@
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include <unistd.h>
@@ -36,7 +38,9 @@ ExitStatus run(const RunOptions& options) {
 
   io::EventLoop loop;
   const bool can_ask = !options.json && is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO);
-  JobRunner runner(loop, *url, *std::move(program), *view, can_ask);
+  std::error_code ignored;
+  JobRunner runner(loop, *url, *std::move(program), *view, can_ask,
+                   {.path = std::filesystem::absolute(options.file, ignored).string()});
   return runner.run(options.recording);
 }
 

@@ -1,7 +1,9 @@
 #pragma once
-// Whether and where connections are written down.
+// Whether and where connections and jobs are written down.
 
 #include <string>
+
+#include "io/journal_options.hpp"
 
 namespace kerf::io {
 
@@ -9,6 +11,7 @@ namespace kerf::io {
 struct RecordingOptions {
   bool records = true;
   std::string folder{};  ///< empty: the user's own, $XDG_STATE_HOME/kerf/logs
+  JournalOptions journal{};
 };
 
 }  // namespace kerf::io

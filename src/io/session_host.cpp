@@ -43,7 +43,22 @@ SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::Sessio
                    session_.on_bytes(loop_.now(), bytes);
                    settle();
                  },
-             .lost = [this](const TransportError& error) { on_lost(error); }}) {}
+             .lost = [this](const TransportError& error) { on_lost(error); }}) {
+  open_journal(url, recording.journal);
+}
+
+void SessionHost::open_journal(const MachineUrl& url, const JournalOptions& options) {
+  // A virtual machine in this process is gone with it: there would be nothing to resume.
+  const bool is_asked_for = !options.folder.empty() || !std::holds_alternative<VirtualAddress>(url);
+  if (!options.keeps || !is_asked_for) return;
+  const std::string path = journal_path(options);
+  if (path.empty()) {
+    if (callbacks_.noted)
+      callbacks_.noted("Jobs are not written down: there is no home folder. Name one with --journal.");
+    return;
+  }
+  journal_ = std::make_unique<JournalStore>(loop_, path, to_string(url), callbacks_.noted);
+}
 
 void SessionHost::submit(const session::Command& command) {
   session_.submit(loop_.now(), command);
@@ -76,6 +91,7 @@ void SessionHost::settle() {
   for (session::Outbox outbox = session_.take_outbox(); !outbox.empty(); outbox = session_.take_outbox()) {
     if (!outbox.realtime.empty()) link_.transport().write_realtime(outbox.realtime);
     if (!outbox.lines.empty()) link_.transport().write_lines(outbox.lines);
+    if (journal_) journal_->append(std::move(outbox.journal));
     write_down();  // behind the bytes: they have no time to lose
     for (const session::Event& event : outbox.events) {
       if (const auto command = keeper_.on_event(event, session_)) session_.submit(loop_.now(), *command);

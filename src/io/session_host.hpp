@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "io/event_loop.hpp"
+#include "io/journal_store.hpp"
 #include "io/link_keeper.hpp"
 #include "io/machine_url.hpp"
 #include "io/settings_keeper.hpp"
@@ -45,10 +46,13 @@ class SessionHost {
   /// Empties the outbox, and arms the timer.
   void settle();
   void write_down();
+  void open_journal(const MachineUrl& url, const JournalOptions& options);
 
   EventLoop& loop_;
   session::RecordedSession session_;
   WireLog log_;
+  /// Null where jobs are not written down.
+  std::unique_ptr<JournalStore> journal_;
   Callbacks callbacks_;
   SettingsKeeper keeper_;
   Timer timer_;
