@@ -7,7 +7,7 @@ PEER ?=
 # How long `make test` runs each fuzz target.
 KERF_FUZZ_SECONDS ?= 20
 
-.PHONY: run build test bench bench-stream docs tidy format lint clean
+.PHONY: run build test campaign bench bench-stream docs tidy format lint clean
 
 # A part of about four minutes, cut by the built-in virtual grblHAL ten times as fast.
 run: build
@@ -28,6 +28,16 @@ test:
 	cmake --preset asan -DKERF_FUZZ_SECONDS=$(KERF_FUZZ_SECONDS)
 	cmake --build --preset asan -j $(JOBS)
 	ctest --preset asan
+
+# RUNS jobs with faults by chance in virtual time, from seed SEED on, in JOBS processes (src/simulation/campaign.hpp).
+# What fails says its seed; `build/release/tests/campaign/campaign --replay SEED` tells it in full.
+RUNS ?= 10000
+SEED ?= 1
+campaign:
+	tools/install_dependencies.sh test
+	cmake --preset release -DKERF_TESTS=ON
+	cmake --build --preset release --target campaign -j $(JOBS)
+	build/release/tests/campaign/campaign --runs $(RUNS) --seed $(SEED) --jobs $(JOBS)
 
 # How fast Kerf plans and simulates (bench/README.md). The simulator listens on every interface, so it gets a network of
 # its own.

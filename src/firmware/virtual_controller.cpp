@@ -279,6 +279,15 @@ bool VirtualController::is_moving() const {
   return phase == Running || phase == Decelerating || parts_->board.state == MachineState::Home;
 }
 
+bool VirtualController::is_rapid() const {
+  const motion::StepBlock* block = parts_->board.executor.executing();
+  return block != nullptr && block->rapid;
+}
+
+bool VirtualController::is_spindle_on() const {
+  return parts_->board.accessories.is_spinning();
+}
+
 std::uint32_t VirtualController::lines_begun() const {
   return parts_->board.blocks_begun;
 }

@@ -69,6 +69,9 @@ class VirtualController {
   [[nodiscard]] bool pendant_commands() const;
   /// Motors turn, or will by themselves: between the moves of a homing cycle.
   [[nodiscard]] bool is_moving() const;
+  /// The motors execute a rapid motion.
+  [[nodiscard]] bool is_rapid() const;
+  [[nodiscard]] bool is_spindle_on() const;
   /// G-code lines that were begun since power-on; `$` lines and empty ones do not count.
   [[nodiscard]] std::uint32_t lines_begun() const;
   /// The world around it. Somebody who replaces a controller takes it along, before power_on().

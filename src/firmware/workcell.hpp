@@ -111,6 +111,8 @@ class Workcell {
   /// The motors lose power at `physical` and count from zero when it comes back: switches and surface stay where they
   /// are.
   void restart_count(const vocabulary::AxisSteps& physical);
+  /// Motor steps that were made before the count began again; together with those since they say where the machine is.
+  [[nodiscard]] const vocabulary::AxisSteps& uncounted_steps() const { return uncounted_; }
 
  private:
   struct HomingSwitch {

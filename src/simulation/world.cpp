@@ -18,6 +18,8 @@ using namespace std::chrono_literals;
 using session::SessionPhase;
 
 constexpr Duration kConnectLimit = 60s;
+/// A welcome waits in the controller behind what it says already, and lines on a slow wire.
+constexpr Duration kProcessing = 60ms;
 
 }  // namespace
 
@@ -42,7 +44,8 @@ World::World(const WorldOptions& options)
       rig_(firmware::VirtualController(firmware::personality_of(options.firmware), options.stored, options.equipment)),
       session_(options.session),
       to_controller_(options.wire, WireGrain::Byte),
-      from_controller_(options.wire, WireGrain::Line) {
+      from_controller_(options.wire, WireGrain::Line),
+      wire_watch_(kProcessing + 2 * options.wire.latency) {
   rig_.power_on(now_);
   // Nobody listens yet: what a controller says before the link is open is lost.
   const Instant opened_at = now_ + options.head_start;
@@ -66,6 +69,7 @@ void World::open() {
   static_cast<void>(rig_.take_outbox());
   linked_ = true;
   watch_.on_link_changed();
+  wire_watch_.on_link_changed();
   session_.on_open(now_, {.sentence = {}, .may_restart = options_.opening_resets});
   if (options_.opening_resets) restart_controller();
   settle();
@@ -80,6 +84,7 @@ void World::restart_controller() {
 void World::cut_link() {
   linked_ = false;
   watch_.on_link_changed();
+  wire_watch_.on_link_changed();
   to_controller_.cut();
   from_controller_.cut();
   session_.on_closed(now_, session::LinkLoss::Unplugged);
@@ -89,6 +94,7 @@ void World::cut_link() {
 void World::kill_sender(Duration unwritten) {
   linked_ = false;
   watch_.on_link_changed();
+  wire_watch_.on_link_changed();
   from_controller_.cut();
   session_ = session::RecordedSession(options_.session);
   journal_.lose_since(now_ - unwritten);
@@ -99,6 +105,7 @@ void World::kill_sender(Duration unwritten) {
 
 void World::submit(const session::Command& command) {
   watch_.on_command(command);
+  wire_watch_.on_command(command);
   session_.submit(now_, command);
   settle();
 }
@@ -130,6 +137,7 @@ void World::inject_to_controller(std::string_view bytes) {
 }
 
 void World::inject_to_session(std::string_view bytes) {
+  wire_watch_.on_received(now_, bytes);
   session_.on_bytes(now_, bytes);
   settle();
 }
@@ -150,6 +158,7 @@ void World::settle() {
   keep_records();
   journal_.append(std::move(out.journal));
   watch_.on_outbox(now_, out);
+  wire_watch_.on_outbox(now_, out, session_.window_bytes());
   if (linked_) {
     to_controller_.send(now_, out.realtime);
     to_controller_.send(now_, out.lines);
@@ -191,6 +200,7 @@ void World::move_bytes() {
   }
   if (const std::string bytes = from_controller_.take_arrived(now_); !bytes.empty()) {
     record(Direction::FromController, bytes);
+    wire_watch_.on_received(now_, bytes);
     session_.on_bytes(now_, bytes);
   }
 }

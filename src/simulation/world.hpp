@@ -21,6 +21,7 @@
 #include "simulation/line_watch.hpp"
 #include "simulation/memory_journal.hpp"
 #include "simulation/wire.hpp"
+#include "simulation/wire_watch.hpp"
 
 namespace kerf::simulation {
 
@@ -113,6 +114,8 @@ class World {
   [[nodiscard]] const MemoryJournal& journal() const { return journal_; }
   /// Whether the sender kept its promise: no line to a machine in motion that it did not start.
   [[nodiscard]] const LineWatch& line_watch() const { return watch_; }
+  /// The account of the wire by somebody who sees only its bytes.
+  [[nodiscard]] const WireWatch& wire_watch() const { return wire_watch_; }
   /// Most bytes that were ever unanswered at once.
   [[nodiscard]] std::size_t most_bytes_in_flight() const { return most_in_flight_; }
 
@@ -133,6 +136,7 @@ class World {
   Wire to_controller_;
   Wire from_controller_;
   LineWatch watch_;
+  WireWatch wire_watch_;
   bool linked_ = false;
   std::vector<session::Event> events_;
   std::vector<firmware::RigRecord> log_;

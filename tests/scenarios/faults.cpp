@@ -48,6 +48,18 @@ TEST_P(Faults, ARebootInAJobIsNoticedAndNothingIsSentOn) {
   EXPECT_TRUE(account_adds_up(world));
 }
 
+TEST_P(Faults, NoLineLeavesBetweenAnAnswerAndAWelcomeThatCameTogether) {
+  const std::string welcome = GetParam() == Firmware::Rabbit    ? "\r\nRabbit GRBL v1.6.0 Build 20260315  \r\n"
+                              : GetParam() == Firmware::GrblHal ? "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n"
+                                                                : "\r\nGrbl 1.1h ['$' for help]\r\n";
+  World world{quick_serial(GetParam())};
+  ASSERT_TRUE(start(world, zigzag(30), 3s));
+  const auto lines = lines_sent(world, streaming::Purpose::JobLine);
+  world.inject_to_session("ok\r\nok\r\nok\r\n" + welcome);
+  EXPECT_EQ(world.session().job()->phase, JobPhase::Interrupted);
+  EXPECT_EQ(lines_sent(world, streaming::Purpose::JobLine), lines);
+}
+
 TEST_P(Faults, ACutLinkInterruptsWhereTheScriptSays) {
   World world{quick_serial(GetParam())};
   ASSERT_TRUE(connect(world));

@@ -128,6 +128,7 @@ void SegmentPreparer::load_steps(const PlannedBlock& block) {
                                                    .step_events = block.step_events,
                                                    .negative_axes = block.negative_axes,
                                                    .is_backlash = block.is_backlash,
+                                                   .rapid = block.feed.rapid,
                                                    .laser_dynamic = block.feed.laser_dynamic,
                                                    .line_number = block.feed.line_number,
                                                    .length_mm = block.length_mm,

@@ -19,6 +19,7 @@ struct StepBlock {
   std::uint32_t step_events = 0;
   AxisMask negative_axes = 0;
   bool is_backlash = false;
+  bool rapid = false;
   bool laser_dynamic = false;
   std::int32_t line_number = 0;
   float length_mm = 0;

@@ -86,8 +86,10 @@ void Session::on_bytes(Instant now, std::string_view bytes) {
   handshake_.on_bytes(bytes);
   for (const auto& received : reader_.read(bytes)) {
     handle(now, received);
-    settle_everything(now);
+    follow_parts(now);
   }
+  // Not before all of it is read: an `ok` makes room for a line that a welcome behind it forbids.
+  pump(now);
 }
 
 void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
@@ -234,6 +236,11 @@ void Session::reset_controller(Instant now) {
 }
 
 void Session::settle_everything(Instant now) {
+  follow_parts(now);
+  pump(now);
+}
+
+void Session::follow_parts(Instant now) {
   follow_handshake(now);
   // First what the job says: after a refusal not one line more may leave.
   follow_job(now);
@@ -242,7 +249,6 @@ void Session::settle_everything(Instant now) {
   begin_waiting_job(now);
   refresh(now);
   if (outbox_.realtime.find_first_of("~\x81") != std::string::npos) gate_.on_activity(now);
-  pump(now);
 }
 
 void Session::follow_handshake(Instant now) {

@@ -131,6 +131,8 @@ class Session {
   void refuse(Refused reason, std::string detail = {});
 
   void settle_everything(Instant now);
+  /// What the parts want done, but for the lines that now have room.
+  void follow_parts(Instant now);
   void follow_handshake(Instant now);
   void follow_job(Instant now);
   void obey_handshake(Instant now, const machine::HandshakeOrder& order);

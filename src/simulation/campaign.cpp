@@ -1,0 +1,284 @@
+#include "simulation/campaign.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "common/base/text.hpp"
+#include "simulation/cutter_watch.hpp"
+#include "simulation/dice.hpp"
+#include "simulation/undisturbed_job.hpp"
+#include "simulation/world.hpp"
+
+namespace kerf::simulation {
+namespace {
+
+using namespace std::chrono_literals;
+using job::JobPhase;
+using session::SessionPhase;
+
+constexpr Duration kOperatorLooks = 50ms;
+constexpr Duration kConnectLimit = 60s;
+/// With feed overrides at 10 % and an operator who takes his time.
+constexpr int kSlowestJob = 15;
+constexpr Duration kPatience = 120s;
+/// After an interruption the controller may execute what it had, and then rests.
+constexpr Duration kAfterwards = 20s;
+/// Nothing goes on for so long: the operator stops the job.
+constexpr Duration kStuck = 25s;
+
+class CampaignRun {
+ public:
+  CampaignRun(CampaignCase made_up, bool keep_transcript)
+      : made_up_(with_transcript(std::move(made_up), keep_transcript)),
+        wanted_(undisturbed(made_up_)),
+        dice_(made_up_.seed ^ 0x9E3779B97F4A7C15U),
+        world_(made_up_.world),
+        watch_(wanted_.work_zero, kCampaignStepsPerMm) {
+    for (const auto& event : made_up_.workcell) world_.touch(event);
+    must("seed " + std::to_string(made_up_.seed));
+  }
+
+  CampaignVerdict run() {
+    verdict_.complaints = wanted_.complaints;
+    if (!verdict_.complaints.empty()) return finish();
+    if (connect() && start()) {
+      run_job();
+    } else {
+      complain("the machine was not ready for the job, although nothing had struck it");
+    }
+    return finish();
+  }
+
+ private:
+  static CampaignCase with_transcript(CampaignCase made_up, bool keep) {
+    made_up.world.keeps_transcript = keep;
+    return made_up;
+  }
+
+  // --- time ---
+
+  void run_for(Duration time) {
+    static_cast<void>(run_until([] { return false; }, time));
+  }
+  template <class Done>
+  bool run_until(const Done& done, Duration limit) {
+    const Instant end = world_.now() + limit;
+    while (!done()) {
+      const bool stepped = world_.step(end);
+      look();
+      if (!stepped) return done();
+    }
+    return true;
+  }
+  void look() { watch_.look(world_.now(), world_.controller(), world_.wire_watch().has_sent_motion()); }
+
+  // --- before the job ---
+
+  bool connect() {
+    world_.open();
+    if (!run_until([this] { return world_.session().phase() == SessionPhase::Ready; }, kConnectLimit)) return false;
+    if (made_up_.homes) world_.submit(session::Home{});
+    run_for(500ms);
+    return run_until(
+        [this] {
+          return world_.session().snapshot().state == vocabulary::MachineState::Idle &&
+                 world_.session().ledger().empty() && !watch_.is_moving();
+        },
+        kConnectLimit);
+  }
+
+  bool start() {
+    auto program = job::Program::load("part.nc", made_up_.program);
+    if (!program) return false;
+    world_.submit(session::StartJob{.program = *program});
+    // Behind lines by hand it begins a little later.
+    const bool began = run_until([this] { return world_.session().job().has_value(); }, kConnectLimit);
+    job_began_ = world_.now();
+    return began;
+  }
+
+  // --- the job ---
+
+  void run_job() {
+    const Instant limit = job_began_ + kSlowestJob * wanted_.takes + kPatience;
+    for (const Fault& fault : made_up_.faults) due_.push_back({.at = job_began_ + instant_of(fault), .fault = &fault});
+    moved_on_at_ = world_.now();
+    while (!is_over() && world_.now() < limit) {
+      run_for(std::min(next_due() - world_.now(), kOperatorLooks));
+      strike();
+      operate();
+    }
+    if (!is_over()) complain("the job never came to an end; " + standing());
+    verdict_.ending =
+        is_killed_ || phase() != JobPhase::Finished ? CampaignEnding::Interrupted : CampaignEnding::Finished;
+    if (verdict_.ending == CampaignEnding::Interrupted) run_for(kAfterwards);
+  }
+
+  [[nodiscard]] Duration instant_of(const Fault& fault) const {
+    return Duration{
+        static_cast<Duration::rep>(std::max(fault.at_share, 0.0) * static_cast<double>(wanted_.takes.count()))};
+  }
+
+  [[nodiscard]] Instant next_due() const {
+    Instant next = kNever;
+    for (const Due& due : due_) next = std::min(next, due.at);
+    return std::max(next, world_.now());
+  }
+
+  void strike() {
+    for (std::size_t i = 0; i < due_.size();) {
+      if (due_[i].at > world_.now() || is_over()) {
+        ++i;
+        continue;
+      }
+      const Due due = due_[i];
+      due_.erase(due_.begin() + static_cast<std::ptrdiff_t>(i));
+      due.is_over ? put_right(*due.fault) : strike(*due.fault);
+    }
+  }
+
+  void strike(const Fault& fault) {
+    verdict_.struck.push_back(fault.kind);
+    note("strikes: " + std::string{name_of(fault.kind)} + " " + fault.order);
+    if (changes_bytes(fault.kind) && !fault.order.contains(" from")) verdict_.unjudged = true;
+    if (!fault.order.empty()) must(fault.order);
+    switch (fault.kind) {
+      case FaultKind::Kill:
+        world_.kill_sender();
+        is_killed_ = true;
+        return;
+      case FaultKind::Hold: world_.submit(session::HoldJob{}); break;
+      case FaultKind::Stop: world_.submit(session::StopJob{}); return;
+      case FaultKind::Abort: world_.submit(session::AbortJob{}); return;
+      case FaultKind::Override: turn_overrides(); return;
+      default: break;
+    }
+    due_.push_back({.at = world_.now() + fault.lasts, .fault = &fault, .is_over = true});
+  }
+
+  void turn_overrides() {
+    for (int turns = dice_.between(1, 6); turns > 0; --turns) {
+      world_.submit(session::SendRealtime{
+          static_cast<std::uint8_t>(dice_.pick({0x90, 0x91, 0x92, 0x93, 0x94, 0x95, 0x96, 0x97, 0x9A, 0x9B}))});
+    }
+  }
+
+  void put_right(const Fault& fault) {
+    note("is over: " + std::string{name_of(fault.kind)});
+    switch (fault.kind) {
+      case FaultKind::LinkSilent:
+      case FaultKind::LinkCut: must("link restore"); break;
+      case FaultKind::PowerLoss: must("power on"); break;
+      case FaultKind::BytesLost:
+      case FaultKind::BytesDoubled:
+      case FaultKind::BytesCorrupted: must("faults off"); break;
+      case FaultKind::Door: must("door close"); break;
+      default: break;
+    }
+  }
+
+  /// What a patient operator does when he looks at the machine.
+  void operate() {
+    if (is_over()) return;
+    follow_progress();
+    const bool waits = phase() == JobPhase::Held;
+    const bool something_is_wrong = std::ranges::any_of(due_, [](const Due& due) { return due.is_over; });
+    if (waits && !something_is_wrong) {
+      note("the operator resumes");
+      world_.submit(session::ResumeJob{});
+    } else if (!waits && world_.now() - moved_on_at_ > kStuck && phase() != JobPhase::Stopping) {
+      note("the operator stops a job that does not go on");
+      world_.submit(session::StopJob{});
+    }
+  }
+
+  void follow_progress() {
+    const auto& job = *world_.session().job();
+    const bool goes_on =
+        job.progress.lines_acknowledged != lines_acknowledged_ || job.phase != last_phase_ || watch_.is_moving();
+    if (goes_on) moved_on_at_ = world_.now();
+    lines_acknowledged_ = job.progress.lines_acknowledged;
+    last_phase_ = job.phase;
+  }
+
+  [[nodiscard]] JobPhase phase() const { return world_.session().job()->phase; }
+  [[nodiscard]] bool is_over() const { return is_killed_ || job::is_final(phase()); }
+
+  // --- the verdict ---
+
+  CampaignVerdict finish() {
+    verdict_.took = world_.now() - job_began_;
+    take(world_.wire_watch().complaints());
+    take(world_.line_watch().broken());
+    judge_ledger();
+    if (!verdict_.unjudged) {
+      take(watch_.complaints());
+      judge_cut();
+    }
+    verdict_.transcript = world_.transcript_text();
+    return std::move(verdict_);
+  }
+
+  void judge_ledger() {
+    const auto& ledger = world_.session().ledger();
+    if (ledger.lines_entered() != ledger.lines_settled() + ledger.lines_struck_out() + ledger.size()) {
+      complain("the ledger does not add up");
+    }
+  }
+
+  void judge_cut() {
+    const CutDifference difference = compare(wanted_.stock, watch_.stock());
+    if (difference.excess_cells > 0) {
+      complain(std::to_string(difference.excess_cells) + " cells were cut that the job does not cut, one at " +
+               text_of(difference.excess));
+    }
+    if (verdict_.ending == CampaignEnding::Finished && difference.missing_cells > 0) {
+      complain(std::to_string(difference.missing_cells) + " cells were left uncut, one at " +
+               text_of(difference.missing));
+    }
+  }
+
+  [[nodiscard]] std::string standing() const {
+    std::string text{boost::describe::enum_to_string(phase(), "?")};
+    text += ", machine ";
+    return text + boost::describe::enum_to_string(world_.controller().state(), "?");
+  }
+
+  void take(const std::vector<std::string>& complaints) {
+    verdict_.complaints.insert(verdict_.complaints.end(), complaints.begin(), complaints.end());
+  }
+  void complain(std::string what) { verdict_.complaints.push_back(std::move(what)); }
+  void note(const std::string& what) { must("note " + what); }
+  void must(const std::string& order) {
+    if (!world_.order(order)) complain("no such order: " + order);
+  }
+
+  struct Due {
+    Instant at{};
+    const Fault* fault = nullptr;
+    bool is_over = false;
+  };
+
+  CampaignCase made_up_;
+  UndisturbedJob wanted_;
+  Dice dice_;
+  World world_;
+  CutterWatch watch_;
+  CampaignVerdict verdict_;
+  std::vector<Due> due_;
+  Instant job_began_{};
+  Instant moved_on_at_{};
+  std::uint32_t lines_acknowledged_ = 0;
+  JobPhase last_phase_{};
+  bool is_killed_ = false;
+};
+
+}  // namespace
+
+CampaignVerdict judge(CampaignCase made_up, bool keep_transcript) {
+  return CampaignRun{std::move(made_up), keep_transcript}.run();
+}
+
+}  // namespace kerf::simulation

@@ -1,0 +1,84 @@
+// The observers of a campaign must notice what they are there for.
+
+#include "simulation/campaign.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "simulation/undisturbed_job.hpp"
+#include "simulation/wire_watch.hpp"
+
+namespace kerf::simulation {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+session::Outbox lines(std::string text) {
+  session::Outbox out;
+  out.lines = std::move(text);
+  return out;
+}
+
+TEST(Campaign, TheSameSeedGivesTheSameRun) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const CampaignCase made_up = campaign_case(seed);
+    EXPECT_EQ(describe(made_up), describe(campaign_case(seed)));
+    const CampaignVerdict first = judge(made_up, true);
+    const CampaignVerdict second = judge(made_up, true);
+    EXPECT_EQ(first.transcript, second.transcript);
+    EXPECT_FALSE(first.transcript.empty());
+    EXPECT_EQ(first.struck, second.struck);
+  }
+}
+
+TEST(WireWatch, BytesBeyondTheWindowAreTold) {
+  WireWatch watch{Duration::zero()};
+  watch.on_command(session::SendLine{});
+  watch.on_outbox(Instant{}, lines("G1X10\n"), 10);
+  EXPECT_THAT(watch.complaints(), IsEmpty());
+  watch.on_outbox(Instant{}, lines("G1X20\n"), 10);
+  EXPECT_THAT(watch.complaints(), SizeIs(1));
+  watch.on_received(Instant{}, "ok\r\nok\r\n");
+  watch.on_outbox(Instant{}, lines("(a long line that travels alone)\n"), 10);
+  EXPECT_THAT(watch.complaints(), SizeIs(1));
+}
+
+TEST(WireWatch, MotionWithoutACommandIsTold) {
+  WireWatch watch{Duration::zero()};
+  watch.on_outbox(Instant{}, lines("$$\n\n$G\n"), 100);
+  EXPECT_THAT(watch.complaints(), IsEmpty());
+  watch.on_outbox(Instant{}, lines("$H\n"), 100);
+  EXPECT_THAT(watch.complaints(), SizeIs(1));
+  watch.on_command(session::Home{});
+  watch.on_outbox(Instant{}, lines("$H\n"), 100);
+  EXPECT_THAT(watch.complaints(), SizeIs(1));
+  watch.on_received(Instant{}, "\r\nGrbl 1.1h ['$' for help]\r\n");
+  watch.on_outbox(Instant{}, lines("G1X1\n"), 100);
+  EXPECT_THAT(watch.complaints(), SizeIs(2));
+}
+
+TEST(WireWatch, AnAnswerTooManyIsTold) {
+  WireWatch watch{Duration::zero()};
+  session::Outbox out;
+  streaming::OwedLine line;
+  line.serial = 1;
+  out.events.emplace_back(session::LineReceived{.message = {}, .raw = {}, .answers = line});
+  watch.on_received(Instant{}, "ok\r\n");
+  watch.on_outbox(Instant{}, out, 100);
+  EXPECT_THAT(watch.complaints(), IsEmpty());
+  watch.on_outbox(Instant{}, out, 100);
+  EXPECT_THAT(watch.complaints(), testing::Contains(HasSubstr("again")));
+}
+
+TEST(CutterWatch, ACutThatIsNotTheJobsIsTold) {
+  // The job of a seed without faults, on a workpiece that another job has cut.
+  CampaignCase one = campaign_case(1);
+  CampaignCase other = campaign_case(2);
+  EXPECT_FALSE(compare(undisturbed(one).stock, undisturbed(other).stock).none());
+  EXPECT_TRUE(compare(undisturbed(one).stock, undisturbed(one).stock).none());
+}
+
+}  // namespace
+}  // namespace kerf::simulation
