@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "apps/rehearsal.hpp"
+#include "io/power_warnings.hpp"
 
 namespace kerf::apps {
 namespace {
@@ -137,7 +138,18 @@ void JobRunner::on(const session::AlarmRaised& alarm) {
 void JobRunner::on(const session::JobStarted&) {
   is_started_ = true;
   if (const auto& job = host_->session().job()) view_.started(*job);
+  look_after_power();
   if (wish_ != Wish::Cut) host_->submit(session::HoldJob{});
+}
+
+void JobRunner::look_after_power() {
+  // A machine inside this process sleeps and wakes with it.
+  if (std::holds_alternative<io::VirtualAddress>(url_)) return;
+  for (const std::string& warning : io::power_warnings(url_)) view_.noted(warning);
+  awake_ = std::make_unique<io::SleepInhibitor>(loop_, "A job runs on " + io::to_string(url_),
+                                                [this](const std::string& sentence) {
+                                                  if (!status_) view_.noted(sentence);
+                                                });
 }
 
 void JobRunner::on(const session::JobProgressed& progressed) {
@@ -265,6 +277,7 @@ void JobRunner::fail(std::string_view sentence, ExitStatus status) {
 void JobRunner::finish(ExitStatus status) {
   status_ = status;
   redraw_.disarm();
+  awake_.reset();
   loop_.stop();
 }
 

@@ -9,6 +9,7 @@
 #include "apps/terminal.hpp"
 #include "io/event_loop.hpp"
 #include "io/session_host.hpp"
+#include "io/sleep_inhibitor.hpp"
 
 namespace kerf::apps {
 
@@ -36,6 +37,7 @@ class JobRunner {
   void end_job(const job::JobState& job);
   void fail(std::string_view sentence, ExitStatus status);
   void finish(ExitStatus status);
+  void look_after_power();
 
   void on(const session::ControllerFound& found);
   void on(const session::ControllerReset& reset);
@@ -68,6 +70,7 @@ class JobRunner {
   bool is_holding_ = false;
   bool is_started_ = false;
   io::Timer redraw_;
+  std::unique_ptr<io::SleepInhibitor> awake_;
   std::unique_ptr<KeyReader> keys_;
   std::unique_ptr<io::SignalWatch> signals_;
   std::unique_ptr<io::SessionHost> host_;

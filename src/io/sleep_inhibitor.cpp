@@ -29,7 +29,7 @@ struct Grant {
 
 /// org.freedesktop.login1.Manager.Inhibit(): the lock holds as long as the descriptor is open.
 Grant ask(sd_bus* bus, const char* what, const std::string& why) {
-  sd_bus_error error = SD_BUS_ERROR_NULL;
+  sd_bus_error error{};
   sd_bus_message* reply = nullptr;
   Grant grant;
   int descriptor = -1;
