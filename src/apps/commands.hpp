@@ -9,6 +9,7 @@
 
 #include "apps/exit_status.hpp"
 #include "io/recording_options.hpp"
+#include "sender/session/job_options.hpp"
 
 namespace kerf::apps {
 
@@ -19,6 +20,9 @@ struct RunOptions {
   std::string machine = kDefaultMachine;
   bool json = false;
   io::RecordingOptions recording{};
+  /// Of `job`, where it was not chosen: hold and ask if there is somebody to be asked, else stop.
+  bool on_error_chosen = false;
+  session::JobOptions job{};
 };
 [[nodiscard]] ExitStatus run(const RunOptions& options);
 

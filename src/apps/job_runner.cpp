@@ -47,10 +47,22 @@ double clock_speed(const io::MachineUrl& url) {
   return address == nullptr ? 1.0 : address->speed.factor.value_or(kJumping);
 }
 
-std::string_view held_sentence(job::HoldCause cause) {
-  switch (cause) {
+std::string tool_change_sentence(const job::JobState& job) {
+  if (!job.tool_change) return "The machine waits for a tool change.";
+  const std::string tool = job.tool_change->tool ? fmt::format("tool {}", *job.tool_change->tool) : "the next tool";
+  return fmt::format("Change to {}, measure it again if its length differs, then continue.", tool);
+}
+
+/// Why it stands, and what the operator can do before he goes on.
+std::string held_sentence(const job::JobState& job) {
+  switch (job.hold_cause) {
     case job::HoldCause::Door: return "The safety door is open: close it first.";
-    case job::HoldCause::ToolChange: return "The machine waits for a tool change.";
+    case job::HoldCause::ToolChange: return tool_change_sentence(job);
+    case job::HoldCause::ProgramPause: return "The program pauses here until you go on.";
+    case job::HoldCause::SingleBlock: return "Single block is on: the machine stops behind every line.";
+    case job::HoldCause::Refusal:
+      return fmt::format("Line {} was refused ({}). Continue leaves it out; stop keeps the position.",
+                         job.refusal->file_line, job.refusal->meaning);
     default: return "The machine stands still.";
   }
 }
@@ -58,17 +70,18 @@ std::string_view held_sentence(job::HoldCause cause) {
 }  // namespace
 
 JobRunner::JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<const job::Program> program,
-                     JobView& view, bool can_ask, job::JobOrigin origin)
+                     const session::JobOptions& options, JobView& view, bool can_ask, job::JobOrigin origin)
     : loop_(loop),
       url_(std::move(url)),
       program_(std::move(program)),
+      options_(options),
       origin_(std::move(origin)),
       view_(view),
       can_ask_(can_ask),
       redraw_(loop) {}
 
 ExitStatus JobRunner::run(const io::RecordingOptions& recording) {
-  constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+  constexpr std::array<int, 4> kSignals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};
   signals_ = std::make_unique<io::SignalWatch>(loop_, kSignals, [this](int signal) { on_signal(signal); });
   if (can_ask_) keys_ = std::make_unique<KeyReader>(loop_, [this](char key) { on_key(key); });
   host_ = std::make_unique<io::SessionHost>(
@@ -90,8 +103,10 @@ void JobRunner::on(const session::ControllerFound& found) {
   if (is_started_) return;
   const auto& capabilities = host_->session().capabilities();
   view_.found(found.sentence, capabilities);
-  host_->submit(session::StartJob{
-      .program = program_, .timeline = rehearse(*program_, capabilities, clock_speed(url_)), .origin = origin_});
+  host_->submit(session::StartJob{.program = program_,
+                                  .timeline = rehearse(*program_, capabilities, clock_speed(url_)),
+                                  .origin = origin_,
+                                  .options = options_});
 }
 
 void JobRunner::on(const session::ControllerReset& reset) {
@@ -149,6 +164,15 @@ void JobRunner::on(const session::JobEnded& ended) {
   end_job(ended.job);
 }
 
+void JobRunner::on(const session::LineRefused& refused) {
+  if (!is_started_ || refused.purpose != streaming::Purpose::JobLine || refused.latched_repeat) return;
+  view_.line_refused(refused);
+}
+
+void JobRunner::on(const session::ProgramSpoke& spoke) {
+  view_.machine_said(spoke.text);
+}
+
 void JobRunner::on(const session::CommandRefused& refused) {
   if (is_started_) {
     view_.noted(refused.sentence);
@@ -174,6 +198,7 @@ void JobRunner::on_lost(const io::TransportError& error) {
 
 void JobRunner::on_signal(int signal) {
   if (signal == SIGINT) return interrupt();
+  if (signal == SIGUSR1) return go_on();
   wish_stop();  // nobody is there any more to be asked
 }
 
@@ -182,13 +207,18 @@ void JobRunner::on_key(char key) {
   if ((key == ' ' || key == '!') && wish_ == Wish::Cut && !is_asking_) return interrupt();
   if (!is_asking_) return;
   if (key == 'c' || key == 'C' || key == '~') {
-    is_asking_ = false;
-    wish_ = Wish::Cut;
-    view_.noted("Going on.");
-    host_->submit(session::ResumeJob{});
+    go_on();
   } else if (key == 's' || key == 'S') {
     wish_stop();
   }
+}
+
+void JobRunner::go_on() {
+  if (!is_asking_) return;
+  is_asking_ = false;
+  wish_ = Wish::Cut;
+  view_.noted("Going on.");
+  host_->submit(session::ResumeJob{});
 }
 
 void JobRunner::interrupt() {
@@ -227,13 +257,13 @@ void JobRunner::ask_if_held(const job::JobState& job) {
   if (job.phase != job::JobPhase::Held) return;
   if (is_asking_ || wish_ == Wish::Stop || wish_ == Wish::Abort) return;
   is_asking_ = true;
-  const std::string where =
-      fmt::format("Held at line {}. {}", job.progress.shown_line(), held_sentence(job.hold_cause));
-  view_.asked(can_ask_ ? where + " [c]ontinue or [s]top? " : where + " Interrupt (SIGINT) to stop the job.");
+  const std::string where = fmt::format("Held at line {}. {}", job.progress.shown_line(), held_sentence(job));
+  view_.asked(job, can_ask_ ? where + " [c]ontinue or [s]top? " : where + " SIGUSR1 continues, SIGINT stops the job.");
 }
 
 void JobRunner::end_job(const job::JobState& job) {
-  const ExitStatus status = status_of(job.phase);
+  const bool left_out = job.phase == job::JobPhase::Finished && job.lines_refused > 0;
+  const ExitStatus status = left_out ? ExitStatus::Refused : status_of(job.phase);
   view_.ended(job, host_->session().snapshot(), status);
   finish(status);
 }

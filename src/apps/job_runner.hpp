@@ -16,8 +16,8 @@ namespace kerf::apps {
 class JobRunner {
  public:
   /// `can_ask`: there is a terminal whose keys answer questions. `origin` is for the journal.
-  JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<const job::Program> program, JobView& view,
-            bool can_ask, job::JobOrigin origin);
+  JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<const job::Program> program,
+            const session::JobOptions& options, JobView& view, bool can_ask, job::JobOrigin origin);
 
   /// Runs the event loop until the job has ended.
   [[nodiscard]] ExitStatus run(const io::RecordingOptions& recording);
@@ -30,6 +30,7 @@ class JobRunner {
   void on_lost(const io::TransportError& error);
   void on_signal(int signal);
   void on_key(char key);
+  void go_on();
   void interrupt();
   void wish_stop();
   void ask_if_held(const job::JobState& job);
@@ -47,6 +48,8 @@ class JobRunner {
   void on(const session::JobStarted& started);
   void on(const session::JobProgressed& progressed);
   void on(const session::JobEnded& ended);
+  void on(const session::LineRefused& refused);
+  void on(const session::ProgramSpoke& spoke);
   void on(const session::CommandRefused& refused);
   void on(const session::SettingsDrifted& drift);
   void on(const session::LinkSilent& silent);
@@ -57,6 +60,7 @@ class JobRunner {
   io::EventLoop& loop_;
   const io::MachineUrl url_;
   std::shared_ptr<const job::Program> program_;
+  const session::JobOptions options_;
   const job::JobOrigin origin_;
   JobView& view_;
   const bool can_ask_;

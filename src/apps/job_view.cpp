@@ -68,7 +68,8 @@ class TerminalView final : public JobView {
   void alarm_raised(const session::AlarmRaised& alarm) override {
     for (const std::string& text : alarm_lines(alarm)) line(text);
   }
-  void asked(std::string_view question) override {
+  void line_refused(const session::LineRefused& refused) override { line(refused.explanation.headline); }
+  void asked(const job::JobState&, std::string_view question) override {
     erase();
     question_ = question;
     draw();
@@ -146,7 +147,8 @@ class LineView final : public JobView {
   void alarm_raised(const session::AlarmRaised& alarm) override {
     for (const std::string& text : alarm_lines(alarm)) line(text);
   }
-  void asked(std::string_view question) override { line(question); }
+  void line_refused(const session::LineRefused& refused) override { line(refused.explanation.headline); }
+  void asked(const job::JobState&, std::string_view question) override { line(question); }
 
   void ended(const job::JobState& job, const machine::Snapshot& snapshot, ExitStatus status) override {
     if (status == ExitStatus::Done) line(progress_line(job, snapshot));
@@ -198,7 +200,16 @@ class JsonView final : public JobView {
           {"text", alarm.text},
           {"explanation", io::to_json(alarm.explanation)}});
   }
-  void asked(std::string_view question) override { noted(question); }
+  void line_refused(const session::LineRefused& refused) override {
+    emit({{"event", "line_refused"},
+          {"refusal", io::to_json(refused.refusal)},
+          {"explanation", io::to_json(refused.explanation)}});
+  }
+  void asked(const job::JobState& job, std::string_view question) override {
+    io::Json json{{"event", "held"}, {"cause", io::to_json(job.hold_cause)}, {"sentence", question}};
+    if (job.tool_change) json["tool_change"] = io::to_json(*job.tool_change);
+    emit(json);
+  }
 
   void ended(const job::JobState& job, const machine::Snapshot& snapshot, ExitStatus status) override {
     emit(progress_of(job, snapshot));
@@ -208,6 +219,8 @@ class JsonView final : public JobView {
                   {"sentence", summary_of(job, snapshot)}};
     if (job.refusal) json["refusal"] = io::to_json(*job.refusal);
     if (job.alarm_code) json["alarm_code"] = *job.alarm_code;
+    json["lines_refused"] = job.lines_refused;
+    if (job.end_line > 0) json["end_line"] = job.end_line;
     json["aftermath"] = io::to_json(job.aftermath);
     json["position_suspect"] = job.position_suspect;
     emit(json);
@@ -237,15 +250,24 @@ class JsonView final : public JobView {
   job::JobPhase phase_ = job::JobPhase::Running;
 };
 
-/// What of the file was executed although or because a line was refused.
+/// What of the file was taken although a line before it was refused.
 std::string aftermath_text(const job::JobState& job) {
-  const job::Aftermath& aftermath = job.aftermath;
-  if (aftermath.lines_executed_after_refusal > 0) {
-    return fmt::format(" {} line{} behind it that the controller had already taken {} executed.",
-                       aftermath.lines_executed_after_refusal, aftermath.lines_executed_after_refusal == 1 ? "" : "s",
-                       aftermath.lines_executed_after_refusal == 1 ? "was" : "were");
-  }
-  return " No line behind it was executed.";
+  const std::uint32_t taken = job.aftermath.lines_executed_after_refusal;
+  if (taken == 0) return " No line behind it was executed.";
+  const bool one = taken == 1;
+  return fmt::format(
+      " {} line{} behind it had already been taken by the controller; what of {} was not cut when it stopped is "
+      "dropped.",
+      taken, one ? "" : "s", one ? "it" : "them");
+}
+
+std::string finished_text(const job::JobState& job) {
+  const job::Progress& progress = job.progress;
+  std::string text =
+      fmt::format("Done: {} lines of {} in {}{}.", progress.lines_total, job.program, clock_text(progress.elapsed_s),
+                  progress.held_s >= 1 ? fmt::format(" ({} of it held)", clock_text(progress.held_s)) : "");
+  if (job.lines_refused > 0) text += " " + job.reason;
+  return text;
 }
 
 }  // namespace
@@ -254,10 +276,7 @@ std::string summary_of(const job::JobState& job, const machine::Snapshot& snapsh
   const job::Progress& progress = job.progress;
   const std::string where = position_text(snapshot);
   switch (job.phase) {
-    case job::JobPhase::Finished:
-      return fmt::format("Done: {} lines of {} in {}{}.", progress.lines_total, job.program,
-                         clock_text(progress.elapsed_s),
-                         progress.held_s >= 1 ? fmt::format(" ({} of it held)", clock_text(progress.held_s)) : "");
+    case job::JobPhase::Finished: return finished_text(job);
     case job::JobPhase::Refused:
       if (job.refusal) {
         return fmt::format("{}, line {}: the controller refused '{}' with error {}: {}{}", job.program,

@@ -29,8 +29,9 @@ class JobView {
   /// Called often; the view decides how often it shows something.
   virtual void progressed(const job::JobState& job, const machine::Snapshot& snapshot) = 0;
   virtual void alarm_raised(const session::AlarmRaised& alarm) = 0;
-  /// A question whose answer is a key.
-  virtual void asked(std::string_view question) = 0;
+  virtual void line_refused(const session::LineRefused& refused) = 0;
+  /// The job stands still and the operator decides; the answer is a key.
+  virtual void asked(const job::JobState& job, std::string_view question) = 0;
   virtual void ended(const job::JobState& job, const machine::Snapshot& snapshot, ExitStatus status) = 0;
   /// There is no job to end: the sentence says why.
   virtual void failed(std::string_view sentence, ExitStatus status) = 0;

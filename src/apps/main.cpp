@@ -5,6 +5,7 @@
 #include <csignal>
 #include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -65,6 +66,38 @@ void add_journal(CLI::App& command, kerf::io::JournalOptions& journal) {
       ->excludes(folder);
 }
 
+void add_job_options(CLI::App& command, const std::shared_ptr<kerf::apps::RunOptions>& options) {
+  using kerf::job::ErrorPolicy;
+  using kerf::job::ProgramSwitch;
+  using kerf::streaming::FlowPolicy;
+  static const std::map<std::string, FlowPolicy> kFlows{{"counting", FlowPolicy::CharacterCounting},
+                                                        {"one-at-a-time", FlowPolicy::OneAtATime}};
+  static const std::map<std::string, ErrorPolicy> kPolicies{
+      {"hold", ErrorPolicy::HoldAndAsk}, {"stop", ErrorPolicy::Stop}, {"continue", ErrorPolicy::Continue}};
+  static const std::map<std::string, ProgramSwitch> kSwitches{
+      {"machine", ProgramSwitch::AsMachine}, {"on", ProgramSwitch::On}, {"off", ProgramSwitch::Off}};
+  auto& job = options->job;
+  command.add_option("--policy", job.flow, "How lines are fed: counting (default) or one-at-a-time")
+      ->transform(CLI::CheckedTransformer(kFlows))
+      ->type_name("POLICY");
+  command
+      .add_option_function<ErrorPolicy>(
+          "--on-error",
+          [options](const ErrorPolicy& policy) {
+            options->job.on_error = policy;
+            options->on_error_chosen = true;
+          },
+          "A refused line: hold and ask (default on a terminal), stop (default elsewhere) or continue without it")
+      ->transform(CLI::CheckedTransformer(kPolicies))
+      ->type_name("POLICY");
+  command.add_option("--optional-stop", job.optional_stop, "Stop at M1: on, off, or as the machine does it (machine)")
+      ->transform(CLI::CheckedTransformer(kSwitches))
+      ->type_name("SWITCH");
+  command.add_option("--block-delete", job.block_delete, "Leave out lines that begin with /: on, off, or machine")
+      ->transform(CLI::CheckedTransformer(kSwitches))
+      ->type_name("SWITCH");
+}
+
 void add_run(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::RunOptions>();
   CLI::App* command = kerf.add_subcommand("run", "Cut a G-code file: connect, stream it, show the progress");
@@ -72,7 +105,10 @@ void add_run(CLI::App& kerf, Chosen& chosen) {
   add_machine(*command, options->machine, options->recording);
   add_journal(*command, options->recording.journal);
   command->add_flag("--json", options->json, "Print events as JSON, one object a line, instead of the progress");
-  command->footer("\nCtrl-C (or Space) holds the machine and asks whether to go on; Ctrl-C again stops the job.\n");
+  add_job_options(*command, options);
+  command->footer(
+      "\nCtrl-C (or Space) holds the machine and asks whether to go on; Ctrl-C again stops the job.\n"
+      "Without a terminal SIGUSR1 continues what is held.\n");
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::run(*options); }; });
 }
 

@@ -38,8 +38,11 @@ ExitStatus run(const RunOptions& options) {
 
   io::EventLoop loop;
   const bool can_ask = !options.json && is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO);
+  session::JobOptions job = options.job;
+  // Nobody would ever answer.
+  if (!can_ask && !options.on_error_chosen) job.on_error = job::ErrorPolicy::Stop;
   std::error_code ignored;
-  JobRunner runner(loop, *url, *std::move(program), *view, can_ask,
+  JobRunner runner(loop, *url, *std::move(program), job, *view, can_ask,
                    {.path = std::filesystem::absolute(options.file, ignored).string()});
   return runner.run(options.recording);
 }

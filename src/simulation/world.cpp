@@ -242,7 +242,8 @@ std::string World::transcript_text() const {
   return text;
 }
 
-std::optional<job::JobState> run_job(World& world, std::shared_ptr<const job::Program> program, Duration limit) {
+std::optional<job::JobState> run_job(World& world, std::shared_ptr<const job::Program> program, Duration limit,
+                                     const session::JobOptions& options) {
   if (world.session().phase() == SessionPhase::Closed) world.open();
   const auto found_or_failed = [](const World& running) {
     const auto phase = running.session().phase();
@@ -252,7 +253,7 @@ std::optional<job::JobState> run_job(World& world, std::shared_ptr<const job::Pr
     return std::nullopt;
   }
   const std::size_t told = world.events().size();
-  world.submit(session::StartJob{std::move(program)});
+  world.submit(session::StartJob{.program = std::move(program), .options = options});
   // Behind lines by hand it begins a little later.
   const auto begun_or_refused = [told](const World& running) {
     return std::any_of(running.events().begin() + static_cast<std::ptrdiff_t>(told), running.events().end(),

@@ -148,8 +148,10 @@ class World {
 };
 
 /// Connects unless connected, starts `program` and runs until the job is over or `limit` has passed. Empty when the
-/// machine was never found or refused the job.
+/// machine was never found or refused the job. Nobody is there to be asked, so a refused line stops it.
 [[nodiscard]] std::optional<job::JobState> run_job(World& world, std::shared_ptr<const job::Program> program,
-                                                   Duration limit);
+                                                   Duration limit,
+                                                   const session::JobOptions& options = {
+                                                       .on_error = job::ErrorPolicy::Stop});
 
 }  // namespace kerf::simulation

@@ -18,6 +18,8 @@ constexpr Duration kHoldRepeat = 1s;
 /// Answers that still come after an alarm come soon; lines of a critical alarm get none.
 constexpr Duration kAlarmDrain = 3s;
 constexpr Duration kReportAge = 250ms;
+/// The controller answers M6 and then enters its Tool state; a report that was on its way may still say Idle.
+constexpr Duration kToolStateDelay = 300ms;
 
 bool is_moving(const machine::Snapshot& snapshot) {
   return snapshot.state != MachineState::Idle && !machine::is_at_rest(snapshot);
@@ -33,8 +35,8 @@ std::string line_text(std::uint32_t file_line) {
 
 }  // namespace
 
-Job::Job(Instant now, const Program& program, bool has_error_latch, std::shared_ptr<const Timeline> timeline)
-    : has_error_latch_(has_error_latch) {
+Job::Job(Instant now, const Program& program, JobTerms terms, std::shared_ptr<const Timeline> timeline)
+    : terms_(std::move(terms)) {
   state_.program = program.name();
   meter_.start(now, program.line_count(), program.size_bytes(), std::move(timeline));
   update_progress(now);
@@ -63,7 +65,6 @@ void Job::enter(Instant now, JobPhase phase, HoldCause cause, bool resumable) {
 void Job::end(Instant now, JobPhase phase, std::string reason) {
   stop_feeding();
   if (phase == JobPhase::Finished) meter_.complete();
-  if (phase == JobPhase::Refused && has_error_latch_) order(JobOrder::ClearLatch);
   enter(now, phase);
   meter_.stop(now);
   update_progress(now);
@@ -83,51 +84,81 @@ void Job::end_by_alarm(Instant now) {
 
 bool Job::on_answer(Instant now, const JobAnswer& answer) {
   if (ended()) return false;
+  const bool repeats = account_ && account_->on_answer(answer.error_code, answer.file_line);
   if (answer.error_code == 0) {
-    if (state_.refusal) {
-      ++state_.aftermath.lines_executed_after_refusal;
-    } else {
-      meter_.acknowledge(answer.file_line, answer.file_offset_after);
-    }
+    if (account_) ++state_.aftermath.lines_executed_after_refusal;
+    meter_.acknowledge(answer.file_line, answer.file_offset_after);
     return false;
   }
   Aftermath& aftermath = state_.aftermath;
   if (aftermath.first_line_not_executed == 0) aftermath.first_line_not_executed = answer.file_line;
   ++aftermath.lines_not_executed;
-  if (state_.refusal) return has_error_latch_ && answer.error_code == state_.refusal->code;
-  if (state_.alarm_code || state_.phase == JobPhase::Stopping) return false;
+  if (!repeats && !state_.alarm_code && state_.phase != JobPhase::Stopping) refuse(now, answer);
+  return repeats;
+}
+
+void Job::refuse(Instant now, const JobAnswer& answer) {
   state_.refusal = Refusal{.file_line = answer.file_line,
                            .text = std::string{answer.text},
                            .code = answer.error_code,
                            .meaning = std::string{answer.meaning}};
-  stop_feeding();
-  enter(now, JobPhase::Draining);
-  return false;
+  ++state_.lines_refused;
+  account_.emplace(*state_.refusal, terms_.has_error_latch);
+  goes_on_ = terms_.on_error == ErrorPolicy::Continue;
+  if (goes_on_ && !terms_.has_error_latch) return;
+  feeding_held_ = true;
+  order(JobOrder::HoldFeeding);
+  if (goes_on_) return;
+  if (terms_.on_error == ErrorPolicy::Stop) {
+    order(JobOrder::AnnounceReset);
+    stop(now);
+    return;
+  }
+  const bool was_held = state_.phase == JobPhase::Held;
+  enter(now, was_held ? JobPhase::Held : JobPhase::Holding, HoldCause::Refusal, was_held && resumable_);
+  if (!was_held) order_hold(now);
 }
 
 void Job::on_lines_answered(Instant now) {
-  if (ended() || lines_settled_) return;
-  lines_settled_ = true;
-  if (state_.phase == JobPhase::Stopping) return;
+  if (ended() || state_.phase == JobPhase::Stopping) return;
   if (state_.alarm_code) {
     if (*state_.alarm_code != number_of(AlarmCode::AbortCycle)) end_by_alarm(now);
     return;
   }
-  if (state_.refusal) {
-    waiting_ = Waiting::ForRest;
+  if (feeding_held_) {
+    if (goes_on_) go_on(now);
+    return;
+  }
+  if (waiting_ != Waiting::ForLines) return;
+  if (terms_.flow && terms_.flow->gate() && !terms_.flow->gate()->by_operator) {
+    waiting_ = Waiting::ForToolState;
+    tool_line_answered_at_ = now;
     return;
   }
   waiting_ = Waiting::ForSync;
   order(JobOrder::SendSync);
 }
 
+// Every line that was on its way is answered: the account of the refused line is complete.
+void Job::go_on(Instant) {
+  goes_on_at_ = account_->goes_on_at();
+  // What the latch refused is sent again.
+  state_.aftermath.lines_not_executed -= account_->lines_latched();
+  if (terms_.flow) terms_.flow->go_back_to(goes_on_at_);
+  if (terms_.has_error_latch) order(JobOrder::ClearLatch);
+  order(JobOrder::FeedAgain);
+  account_.reset();
+  feeding_held_ = goes_on_ = false;
+}
+
 void Job::on_sync_answered(Instant) {
   if (waiting_ == Waiting::ForSync) waiting_ = Waiting::ForRest;
 }
 
-void Job::on_snapshot(Instant now, const machine::Snapshot& snapshot) {
+void Job::on_snapshot(Instant now, const machine::Snapshot& snapshot, std::string_view awaited) {
   if (ended()) return;
   moving_ = is_moving(snapshot);
+  in_hold_ = snapshot.state == MachineState::Hold;
   if (snapshot.overrides) meter_.set_feed_override(now, snapshot.overrides->feed);
   update_progress(now);
   if (state_.phase == JobPhase::Stopping) {
@@ -147,51 +178,87 @@ void Job::on_snapshot(Instant now, const machine::Snapshot& snapshot) {
     if (!state_.alarm_code) on_alarm(now, snapshot.alarm_code.value_or(snapshot.substate.value_or(0)), "");
     return;
   }
-  follow_motion(now, snapshot);
+  follow_motion(now, snapshot, awaited);
 }
 
-void Job::follow_motion(Instant now, const machine::Snapshot& snapshot) {
+HoldCause Job::cause_of_hold(const machine::Snapshot& snapshot, std::string_view awaited) const {
+  if (asks_about_refusal()) return HoldCause::Refusal;
+  if (hold_asked_) return HoldCause::FeedHold;
+  const FlowWords words = flow_words_of(awaited);
+  if (words.pauses || words.pauses_optionally) return HoldCause::ProgramPause;
+  if (snapshot.inputs && snapshot.inputs->single_block) return HoldCause::SingleBlock;
+  return HoldCause::FeedHold;
+}
+
+void Job::follow_motion(Instant now, const machine::Snapshot& snapshot, std::string_view awaited) {
   const bool may_hold = state_.phase != JobPhase::Draining;
   if (!may_hold) resumable_ = machine::can_resume(snapshot);
+  const bool rests = machine::is_at_rest(snapshot);
   switch (snapshot.state) {
     case MachineState::Hold:
-      if (!may_hold || now < deaf_to_hold_until_) return;
-      if (machine::is_at_rest(snapshot))
-        enter(now, JobPhase::Held, HoldCause::FeedHold, true);
-      else
-        enter(now, JobPhase::Holding, HoldCause::FeedHold);
+      if (!may_hold || now < deaf_to_hold_until_ || is_at_operators_gate()) return;
+      enter(now, rests ? JobPhase::Held : JobPhase::Holding, cause_of_hold(snapshot, awaited), rests);
       return;
     case MachineState::Door:
       if (!may_hold) return;
       if (snapshot.substate == vocabulary::kDoorResumingGrbl || snapshot.substate == vocabulary::kDoorResumingHal) {
         enter(now, JobPhase::Running);
       } else {
-        enter(now, machine::is_at_rest(snapshot) ? JobPhase::Held : JobPhase::Holding, HoldCause::Door,
-              machine::can_resume(snapshot));
+        enter(now, rests ? JobPhase::Held : JobPhase::Holding, HoldCause::Door, machine::can_resume(snapshot));
       }
       return;
     case MachineState::Tool:
-      if (may_hold && now >= deaf_to_hold_until_) enter(now, JobPhase::Held, HoldCause::ToolChange, true);
+      if (!may_hold || now < deaf_to_hold_until_) return;
+      if (terms_.flow) state_.tool_change = terms_.flow->gate();
+      enter(now, JobPhase::Held, HoldCause::ToolChange, true);
       return;
-    case MachineState::Idle:
     case MachineState::Check:
-      if (waiting_ == Waiting::ForRest && state_.refusal) {
-        end(now, JobPhase::Refused,
-            "The controller refused " + line_text(state_.refusal->file_line) + " with error " +
-                std::to_string(state_.refusal->code) + ".");
-        return;
-      }
-      if (waiting_ == Waiting::ForRest && !hold_ordered_) {
-        end(now, JobPhase::Finished, "Every line was executed and the machine stands still.");
-        return;
-      }
+      // No hold is taken there (protocol.md 6.6), and nothing moves.
+      if (asks_about_refusal()) return enter(now, JobPhase::Held, HoldCause::Refusal, true);
+      [[fallthrough]];
+    case MachineState::Idle:
+      if (is_at_operators_gate()) return;
+      if (waiting_ == Waiting::ForToolState && now - tool_line_answered_at_ >= kToolStateDelay) follow_tool_gate(now);
+      if (waiting_ == Waiting::ForRest && !hold_ordered_) return follow_rest(now);
       break;
     default: break;
   }
   if (may_hold) follow_run(now);
 }
 
+bool Job::is_at_operators_gate() const {
+  return state_.phase == JobPhase::Held && state_.tool_change && state_.tool_change->by_operator;
+}
+
+// Nothing is on its way and the machine stands.
+void Job::follow_rest(Instant now) {
+  if (terms_.flow && terms_.flow->gate()) {
+    state_.tool_change = terms_.flow->gate();
+    enter(now, JobPhase::Held, HoldCause::ToolChange, true);
+    return;
+  }
+  if (terms_.flow) state_.end_line = terms_.flow->end_line();
+  end(now, JobPhase::Finished,
+      state_.lines_refused == 0 ? "Every line was executed and the machine stands still."
+                                : "The machine stands still; " + std::to_string(state_.lines_refused) + " refused " +
+                                      (state_.lines_refused == 1 ? "line was" : "lines were") +
+                                      " left out, the last is line " + std::to_string(state_.refusal->file_line) + ".");
+}
+
+// The controller has left its Tool state, or never entered it.
+void Job::follow_tool_gate(Instant now) {
+  terms_.flow->pass_gate();
+  state_.tool_change.reset();
+  waiting_ = Waiting::ForLines;
+  enter(now, JobPhase::Running);
+}
+
 void Job::follow_run(Instant now) {
+  // A door that was closed again does not answer the question.
+  if (asks_about_refusal() && !hold_ordered_) {
+    enter(now, JobPhase::Holding, HoldCause::Refusal);
+    return order_hold(now);
+  }
   if (!hold_ordered_) {
     if (state_.phase != JobPhase::Running) enter(now, JobPhase::Running);
     return;
@@ -208,7 +275,6 @@ void Job::on_alarm(Instant now, int code, std::string_view meaning) {
   stop_feeding();
   enter(now, JobPhase::Draining);
   deadline_ = now + kAlarmDrain;
-  if (lines_settled_ && code != number_of(AlarmCode::AbortCycle)) end_by_alarm(now);
 }
 
 void Job::on_lines_lost(std::uint32_t first_file_line, std::uint32_t lines) {
@@ -221,7 +287,7 @@ void Job::on_lines_lost(std::uint32_t first_file_line, std::uint32_t lines) {
 void Job::on_welcome(Instant now) {
   if (ended()) return;
   if (state_.phase == JobPhase::Stopping) {
-    end(now, JobPhase::Stopped,
+    end(now, stopped_phase(),
         state_.position_suspect ? "The job was stopped in motion: home the machine before relying on its position."
                                 : "The job was stopped and the machine's position is kept.");
     return;
@@ -240,13 +306,25 @@ void Job::on_link_closed(Instant now) {
 }
 
 void Job::hold(Instant now) {
-  if (ended() || state_.phase == JobPhase::Stopping) return;
+  // At a tool change by the operator the machine is idle and stands.
+  if (ended() || state_.phase == JobPhase::Stopping || is_at_operators_gate()) return;
   order_hold(now);
+  hold_asked_ = true;
   if (state_.phase == JobPhase::Running) enter(now, JobPhase::Holding, HoldCause::FeedHold);
 }
 
 void Job::resume(Instant now) {
   if (!can_resume()) return;
+  hold_asked_ = false;
+  if (is_at_operators_gate()) {
+    if (in_hold_) order(JobOrder::CycleStart);
+    terms_.flow->pass_gate();
+    state_.tool_change.reset();
+    waiting_ = Waiting::ForLines;
+    enter(now, JobPhase::Running);
+    return;
+  }
+  if (asks_about_refusal() && state_.hold_cause == HoldCause::Refusal) goes_on_ = true;
   deaf_to_hold_until_ = now + kReportAge;
   order(JobOrder::CycleStart);
   if (state_.phase == JobPhase::Held) enter(now, JobPhase::Running);
@@ -281,7 +359,7 @@ void Job::advance_to(Instant now) {
   stop_.advance_to(now);
   obey_stop();
   if (stop_.is_unconfirmed()) {
-    end(now, JobPhase::Stopped, "The controller did not confirm the reset: look at the machine before anything else.");
+    end(now, stopped_phase(), "The controller did not confirm the reset: look at the machine before anything else.");
     return;
   }
   if (now < deadline_) return;

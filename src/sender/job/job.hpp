@@ -21,13 +21,17 @@ namespace kerf::job {
 /// What a job wants done. The order matters.
 enum class JobOrder {
   StopFeeding,  ///< no more lines of the program
+  HoldFeeding,  ///< no line of the program for now
+  FeedAgain,    ///< from the line `goes_on_at()` on
   SendSync,     ///< a line whose answer proves that the motion has ended (protocol.md 6.5)
   ClearLatch,   ///< an empty line, so that the next line is not refused on behalf of this job (protocol.md 6.4)
   FeedHold,
   CycleStart,
   SoftReset,
+  AnnounceReset,  ///< nobody has asked for the reset that is to come: the refused line is the reason
 };
-BOOST_DESCRIBE_ENUM(JobOrder, StopFeeding, SendSync, ClearLatch, FeedHold, CycleStart, SoftReset)
+BOOST_DESCRIBE_ENUM(JobOrder, StopFeeding, HoldFeeding, FeedAgain, SendSync, ClearLatch, FeedHold, CycleStart,
+                    SoftReset)
 
 /// The answer to a line of the program.
 struct JobAnswer {
@@ -38,20 +42,30 @@ struct JobAnswer {
   std::string_view meaning;
 };
 
+/// What a job goes by.
+struct JobTerms {
+  /// An error makes the controller refuse all later lines (protocol.md 6.4).
+  bool has_error_latch = false;
+  ErrorPolicy on_error = ErrorPolicy::HoldAndAsk;
+  /// Shared with the lines that are fed; may be null.
+  std::shared_ptr<ProgramFlow> flow{};
+};
+
 /// Follows one job. It never restarts anything: a welcome, a lost link or a pendant ends it, and only the operator's
-/// `resume` leaves a hold. After an error no further line is fed; what the controller had already taken is accounted
-/// for, and the job ends when the machine rests.
+/// `resume` leaves a hold. What happens after a refused line, its ErrorPolicy says; what the controller had already
+/// taken is accounted for.
 class Job {
  public:
-  /// `has_error_latch`: an error makes the controller refuse all later lines (protocol.md 6.4). `timeline` may be null.
-  Job(Instant now, const Program& program, bool has_error_latch, std::shared_ptr<const Timeline> timeline = nullptr);
+  /// `timeline` may be null.
+  Job(Instant now, const Program& program, JobTerms terms, std::shared_ptr<const Timeline> timeline = nullptr);
 
   /// Takes an answer; true when it is a latched repeat of the first error, so that the line was not executed.
   bool on_answer(Instant now, const JobAnswer& answer);
-  /// All lines of the program have been sent and answered.
+  /// All lines that were sent have been answered, and there is none to send now.
   void on_lines_answered(Instant now);
   void on_sync_answered(Instant now);
-  void on_snapshot(Instant now, const machine::Snapshot& snapshot);
+  /// `awaited`: the line whose answer is due next, empty if none is.
+  void on_snapshot(Instant now, const machine::Snapshot& snapshot, std::string_view awaited = {});
   /// `meaning` for the sentence at the end.
   void on_alarm(Instant now, int code, std::string_view meaning);
   /// The controller forgot everything that it had not answered: reset, critical alarm or flush.
@@ -73,13 +87,15 @@ class Job {
   [[nodiscard]] bool can_resume() const {
     return resumable_ && (state_.phase == JobPhase::Held || state_.phase == JobPhase::Draining);
   }
+  /// The line of JobOrder::FeedAgain.
+  [[nodiscard]] std::uint32_t goes_on_at() const { return goes_on_at_; }
   [[nodiscard]] const JobState& state() const { return state_; }
   /// Brings `state().progress` up to `now`.
   void update_progress(Instant now) { state_.progress = meter_.at(now); }
 
  private:
   /// What the job waits for beyond its phase.
-  enum class Waiting { ForLines, ForSync, ForRest };
+  enum class Waiting { ForLines, ForSync, ForRest, ForToolState };
 
   void order(JobOrder what) { orders_.push_back(what); }
   void stop_feeding();
@@ -88,22 +104,40 @@ class Job {
   void end(Instant now, JobPhase phase, std::string reason);
   void end_by_alarm(Instant now);
   void obey_stop();
-  void follow_motion(Instant now, const machine::Snapshot& snapshot);
+  void refuse(Instant now, const JobAnswer& answer);
+  void go_on(Instant now);
+  void follow_motion(Instant now, const machine::Snapshot& snapshot, std::string_view awaited);
+  void follow_rest(Instant now);
+  void follow_tool_gate(Instant now);
+  [[nodiscard]] HoldCause cause_of_hold(const machine::Snapshot& snapshot, std::string_view awaited) const;
   void follow_run(Instant now);
+  [[nodiscard]] bool is_at_operators_gate() const;
+  [[nodiscard]] bool asks_about_refusal() const { return feeding_held_ && !goes_on_; }
+  /// A job that ends because of a refused line says so.
+  [[nodiscard]] JobPhase stopped_phase() const { return account_ ? JobPhase::Refused : JobPhase::Stopped; }
   [[nodiscard]] bool ended() const { return is_final(state_.phase); }
 
   JobState state_;
   ProgressMeter meter_;
   StopSequence stop_;
-  bool has_error_latch_ = false;
+  JobTerms terms_;
+  /// Of the last refused line, until the job goes on behind it.
+  std::optional<RefusalAccount> account_;
+  std::uint32_t goes_on_at_ = 0;
+  bool feeding_held_ = false;
+  /// The operator, or the policy, has decided to go on without the refused line.
+  bool goes_on_ = false;
   Waiting waiting_ = Waiting::ForLines;
   bool feeding_ = true;
-  bool lines_settled_ = false;
   bool resumable_ = false;
   bool hold_ordered_ = false;
+  /// By the operator, who has not resumed yet.
+  bool hold_asked_ = false;
   bool moving_ = false;
+  bool in_hold_ = false;
   Instant deadline_ = kNever;
   Instant hold_ordered_at_{};
+  Instant tool_line_answered_at_{};
   /// Reports about the hold before this instant may have been on their way when the cycle start went out.
   Instant deaf_to_hold_until_{};
   std::string alarm_meaning_;

@@ -8,6 +8,8 @@
 
 #include <boost/describe.hpp>
 
+#include "sender/job/error_policy.hpp"
+#include "sender/job/program_flow.hpp"
 #include "sender/job/progress.hpp"
 
 namespace kerf::job {
@@ -16,8 +18,8 @@ namespace kerf::job {
 enum class JobPhase {
   Running,
   Holding,      ///< feed hold asked for, the machine still decelerates
-  Held,         ///< at rest in Hold:0, Door:0 or Tool; `ResumeJob` goes on
-  Draining,     ///< a line was refused: no more lines, answers and motion still to come
+  Held,         ///< at rest, `hold_cause` says why; `ResumeJob` goes on where it can
+  Draining,     ///< an alarm: no more lines, answers still to come
   Stopping,     ///< hold, standstill, then reset
   Finished,     ///< every line answered, motion ended, Idle seen
   Refused,      ///< the controller refused a line
@@ -33,19 +35,16 @@ BOOST_DESCRIBE_ENUM(JobPhase, Running, Holding, Held, Draining, Stopping, Finish
 }
 
 /// Why a job stands still.
-enum class HoldCause { None, FeedHold, Door, ToolChange };
-BOOST_DESCRIBE_ENUM(HoldCause, None, FeedHold, Door, ToolChange)
-
-/// A line that the controller refused.
-struct Refusal {
-  std::uint32_t file_line = 0;
-  std::string text{};
-  int code = 0;
-  /// The code in words, the controller's own first.
-  std::string meaning{};
-  bool operator==(const Refusal&) const = default;
+enum class HoldCause {
+  None,
+  FeedHold,
+  Door,
+  ToolChange,    ///< the controller waits in its Tool state, or Kerf holds the line with M6 back
+  ProgramPause,  ///< M0, M1 or M60
+  SingleBlock,   ///< the controller stops behind every line
+  Refusal,       ///< a line was refused, and the operator is asked
 };
-BOOST_DESCRIBE_STRUCT(Refusal, (), (file_line, text, code, meaning))
+BOOST_DESCRIBE_ENUM(HoldCause, None, FeedHold, Door, ToolChange, ProgramPause, SingleBlock, Refusal)
 
 /// Lines sent whose fate matters after a refusal, an alarm or an interruption.
 struct Aftermath {
@@ -66,7 +65,14 @@ struct JobState {
   JobPhase phase = JobPhase::Running;
   HoldCause hold_cause = HoldCause::None;
   Progress progress;
+  /// The last line that was refused.
   std::optional<Refusal> refusal;
+  /// Lines of the file that were refused and not executed.
+  std::uint32_t lines_refused = 0;
+  /// The tool change at which it stands.
+  std::optional<ToolGate> tool_change;
+  /// The line that ended the program (M2, M30, `%`); what the file holds behind it was not sent.
+  std::uint32_t end_line = 0;
   std::optional<int> alarm_code;
   Aftermath aftermath;
   /// After an abort or an alarm in motion the position may be wrong.
@@ -76,6 +82,7 @@ struct JobState {
   bool operator==(const JobState&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(JobState, (),
-                      (program, phase, hold_cause, progress, refusal, alarm_code, aftermath, position_suspect, reason))
+                      (program, phase, hold_cause, progress, refusal, lines_refused, tool_change, end_line, alarm_code,
+                       aftermath, position_suspect, reason))
 
 }  // namespace kerf::job

@@ -15,7 +15,9 @@ using vocabulary::MachineState;
 
 class JobTest : public testing::Test {
  protected:
-  Job make(bool latch = false) { return Job{now_, **Program::load("part.nc", "G1X1\nG1X2\nG1X3\n"), latch}; }
+  Job make(JobTerms terms = {}) {
+    return Job{now_, **Program::load("part.nc", "G1X1\nG1X2\nG1X3\n"), std::move(terms)};
+  }
   machine::Snapshot in(MachineState state, std::optional<int> substate = std::nullopt) {
     machine::Snapshot snapshot;
     snapshot.state = state;
@@ -127,33 +129,94 @@ TEST_F(JobTest, AbortInMotionLeavesThePositionSuspect) {
   EXPECT_TRUE(job.state().position_suspect);
 }
 
-TEST_F(JobTest, LatchedRepeatsAreLinesNotExecuted) {
-  auto job = make(true);
+TEST_F(JobTest, ARefusedLineHoldsAndAsks) {
+  auto job = make();
   answer(job, 1, 20);
-  EXPECT_EQ(job.state().phase, JobPhase::Draining);
-  EXPECT_TRUE(
-      job.on_answer(now_, {.file_line = 2, .file_offset_after = 10, .text = "G1X2", .error_code = 20, .meaning = ""}));
+  EXPECT_EQ(job.state().phase, JobPhase::Holding);
+  EXPECT_EQ(job.state().hold_cause, HoldCause::Refusal);
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::HoldFeeding, JobOrder::FeedHold));
+  answer(job, 2);
   job.on_lines_answered(now_);
-  job.on_snapshot(now_, in(MachineState::Run));
-  EXPECT_EQ(job.state().phase, JobPhase::Draining);
-  job.on_snapshot(now_, in(MachineState::Idle));
-  EXPECT_EQ(job.state().phase, JobPhase::Refused);
-  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::StopFeeding, JobOrder::ClearLatch));
-  EXPECT_EQ(job.state().refusal->file_line, 1U);
-  EXPECT_EQ(job.state().aftermath.lines_not_executed, 2U);
-  EXPECT_EQ(job.state().aftermath.lines_executed_after_refusal, 0U);
+  EXPECT_THAT(job.take_orders(), IsEmpty()) << "nothing goes on by itself";
+  job.on_snapshot(now_, in(MachineState::Hold, 0));
+  EXPECT_EQ(job.state().phase, JobPhase::Held);
+  EXPECT_EQ(job.state().hold_cause, HoldCause::Refusal);
+  job.resume(now_ + 1s);
+  job.on_lines_answered(now_ + 1s);
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::CycleStart, JobOrder::FeedAgain));
+  EXPECT_EQ(job.goes_on_at(), 3U) << "line 2 was taken";
+  EXPECT_EQ(job.state().aftermath.lines_executed_after_refusal, 1U);
+  EXPECT_EQ(job.state().lines_refused, 1U);
 }
 
-TEST_F(JobTest, WithoutLatchTheLinesBehindAreExecuted) {
-  auto job = make(false);
+TEST_F(JobTest, WhatALatchRefusedIsSentAgain) {
+  auto job = make({.has_error_latch = true});
   answer(job, 1, 20);
-  answer(job, 2);
-  answer(job, 3);
-  job.on_lines_answered(now_);
-  job.on_snapshot(now_, in(MachineState::Idle));
-  EXPECT_EQ(job.state().phase, JobPhase::Refused);
-  EXPECT_EQ(job.state().aftermath.lines_executed_after_refusal, 2U);
+  EXPECT_TRUE(
+      job.on_answer(now_, {.file_line = 2, .file_offset_after = 10, .text = "G1X2", .error_code = 20, .meaning = ""}));
+  EXPECT_EQ(job.state().aftermath.lines_not_executed, 2U);
+  job.on_snapshot(now_, in(MachineState::Hold, 0));
+  job.resume(now_ + 1s);
+  static_cast<void>(job.take_orders());
+  job.on_lines_answered(now_ + 1s);
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::ClearLatch, JobOrder::FeedAgain));
+  EXPECT_EQ(job.goes_on_at(), 2U);
   EXPECT_EQ(job.state().aftermath.lines_not_executed, 1U);
+  EXPECT_EQ(job.state().lines_refused, 1U);
+}
+
+TEST_F(JobTest, ADoorDoesNotAnswerTheQuestion) {
+  auto job = make();
+  answer(job, 1, 20);
+  job.on_snapshot(now_, in(MachineState::Door, 0));
+  job.resume(now_ + 1s);
+  static_cast<void>(job.take_orders());
+  job.on_snapshot(now_ + 2s, in(MachineState::Run));
+  EXPECT_THAT(job.take_orders(), ElementsAre(JobOrder::FeedHold));
+  EXPECT_EQ(job.state().hold_cause, HoldCause::Refusal);
+}
+
+TEST_F(JobTest, AStopForARefusedLineEndsAsRefused) {
+  for (const auto policy : {ErrorPolicy::Stop, ErrorPolicy::HoldAndAsk}) {
+    auto job = make({.on_error = policy});
+    answer(job, 1, 20);
+    job.on_snapshot(now_, in(MachineState::Hold, 0));
+    job.stop(now_ + 1s);
+    job.on_lines_lost(2, 2);
+    job.on_welcome(now_ + 2s);
+    EXPECT_EQ(job.state().phase, JobPhase::Refused);
+    EXPECT_EQ(job.state().aftermath.lines_not_executed, 3U);
+    EXPECT_FALSE(job.state().position_suspect);
+  }
+}
+
+TEST_F(JobTest, ContinueGoesOnWithoutTheLineAndSaysSo) {
+  auto job = make({.on_error = ErrorPolicy::Continue});
+  answer(job, 1);
+  answer(job, 2, 20);
+  answer(job, 3);
+  EXPECT_THAT(job.take_orders(), IsEmpty());
+  job.on_lines_answered(now_);
+  job.on_sync_answered(now_);
+  job.on_snapshot(now_, in(MachineState::Idle));
+  EXPECT_EQ(job.state().phase, JobPhase::Finished);
+  EXPECT_EQ(job.state().lines_refused, 1U);
+  EXPECT_EQ(job.state().reason, "The machine stands still; 1 refused line was left out, the last is line 2.");
+}
+
+TEST_F(JobTest, AHoldOfTheProgramsOwnIsNamed) {
+  auto job = make();
+  job.on_snapshot(now_, in(MachineState::Hold, 0), "M0");
+  EXPECT_EQ(job.state().hold_cause, HoldCause::ProgramPause);
+  auto single = make();
+  auto snapshot = in(MachineState::Hold, 0);
+  snapshot.inputs.emplace().single_block = true;
+  single.on_snapshot(now_, snapshot, "G1X1");
+  EXPECT_EQ(single.state().hold_cause, HoldCause::SingleBlock);
+  auto asked = make();
+  asked.hold(now_);
+  asked.on_snapshot(now_, in(MachineState::Hold, 0), "M0");
+  EXPECT_EQ(asked.state().hold_cause, HoldCause::FeedHold);
 }
 
 TEST_F(JobTest, AlarmWaitsForTheAnswersThatStillCome) {

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "common/base/text.hpp"
+#include "sender/job/program_flow.hpp"
 
 namespace kerf::job {
 namespace {
@@ -50,11 +51,20 @@ void append_words(std::string& out, std::string_view line, WireForm form) {
   }
 }
 
+void replace_optional_stop(std::string& out, std::size_t from, ProgramSwitch optional_stop) {
+  const std::string_view text = std::string_view{out}.substr(from);
+  if (!flow_words_of(text).pauses_optionally) return;
+  std::string rest = without_word(text, 'M', 1);
+  if (optional_stop == ProgramSwitch::On) rest.insert(rest.starts_with('/') ? 1 : 0, "M0");
+  out.replace(from, std::string::npos, rest);
+}
+
 }  // namespace
 
 WireForm wire_form_of(const vocabulary::Dialect& dialect) {
   return {.keeps_messages = dialect.comment_rule == vocabulary::CommentRule::ParsedForMessages,
-          .keeps_percent = dialect.percent_rule != vocabulary::PercentRule::Error};
+          .keeps_percent = dialect.percent_rule != vocabulary::PercentRule::Error,
+          .keeps_slash = dialect.block_delete_rule == vocabulary::BlockDeleteRule::SkippedIfOn};
 }
 
 void append_wire_form(std::string& out, std::string_view line, WireForm form) {
@@ -63,8 +73,12 @@ void append_wire_form(std::string& out, std::string_view line, WireForm form) {
     std::ranges::copy_if(trimmed, std::back_inserter(out), is_plain);
     return;
   }
+  const bool may_be_deleted = trimmed.starts_with('/');
+  if (may_be_deleted && form.block_delete == ProgramSwitch::On) return;
+  const bool keeps_slash = form.keeps_slash && form.block_delete == ProgramSwitch::AsMachine;
   const std::size_t before = out.size();
-  append_words(out, trimmed, form);
+  append_words(out, may_be_deleted && !keeps_slash ? trimmed.substr(1) : trimmed, form);
+  if (form.optional_stop != ProgramSwitch::AsMachine) replace_optional_stop(out, before, form.optional_stop);
   if (!form.keeps_percent && std::string_view{out}.substr(before) == "%") out.resize(before);
 }
 

@@ -4,9 +4,19 @@
 #include <string>
 #include <string_view>
 
+#include <boost/describe.hpp>
+
 #include "common/vocabulary/dialect.hpp"
 
 namespace kerf::job {
+
+/// A switch of the program's that a machine may have too.
+enum class ProgramSwitch {
+  AsMachine,  ///< as this controller does it
+  On,
+  Off,
+};
+BOOST_DESCRIBE_ENUM(ProgramSwitch, AsMachine, On, Off)
 
 /// What a controller can use besides the words themselves.
 struct WireForm {
@@ -14,6 +24,13 @@ struct WireForm {
   bool keeps_messages = false;
   /// A lone `%` is understood; Grbl answers it with an error, so it is left out there (protocol.md 6.3).
   bool keeps_percent = false;
+  /// A leading `/` is understood. Where it is not, it is taken off, and the line is cut: what Grbl does, while Rabbit
+  /// answers with an error (protocol.md 6.3).
+  bool keeps_slash = false;
+  /// Leaves out lines that begin with `/` (On), or cuts them (Off).
+  ProgramSwitch block_delete = ProgramSwitch::AsMachine;
+  /// M1 becomes M0 (On), or is left out (Off).
+  ProgramSwitch optional_stop = ProgramSwitch::AsMachine;
 };
 
 [[nodiscard]] WireForm wire_form_of(const vocabulary::Dialect& dialect);

@@ -16,6 +16,7 @@
 #include "sender/job/program.hpp"
 #include "sender/job/timeline.hpp"
 #include "sender/machine/settings_plan.hpp"
+#include "sender/session/job_options.hpp"
 
 namespace kerf::session {
 
@@ -23,21 +24,22 @@ namespace kerf::session {
 /// timeline its progress is told by the rehearsed time. Begins when modes and offsets are known to be those before its
 /// first line: after lines by hand the controller is asked for them first.
 struct StartJob {
-  std::shared_ptr<const job::Program> program;
+  std::shared_ptr<const job::Program> program{};
   std::shared_ptr<const job::Timeline> timeline{};
   /// For the journal.
   job::JobOrigin origin{};
+  JobOptions options{};
 };
 
 /// Feed hold: decelerate and stand still, position kept. Works in every state.
 struct HoldJob {};
 
-/// Goes on after a hold, a program pause, a closed door or a tool change; refused while the machine still decelerates,
-/// because a cycle start in Hold:1 is lost (protocol.md 2).
+/// Goes on after a hold, a program pause, a closed door, a tool change or a refused line (without it); refused while
+/// the machine still decelerates, because a cycle start in Hold:1 is lost (protocol.md 2).
 struct ResumeJob {};
 
-/// Hold, wait for standstill, then soft reset: position kept, no alarm. The same three steps on every firmware;
-/// grblHAL's 0x19 would do it in one, but only there.
+/// Hold, wait for standstill, then soft reset: position kept, no alarm. Without a job it stops what moves by hand; a
+/// jog needs no reset, it is cancelled.
 struct StopJob {};
 
 /// Soft reset now. Where the machine was moving, its position is suspect afterwards.
@@ -97,7 +99,7 @@ inline constexpr std::array<std::string_view, std::variant_size_v<Command>> kCom
 static_assert(!kCommandNames.back().empty(), "name the new command here, in the order of the variant");
 
 // Logs hold commands with their members; StartJob's program is written down apart.
-BOOST_DESCRIBE_STRUCT(StartJob, (), ())
+BOOST_DESCRIBE_STRUCT(StartJob, (), (options))
 BOOST_DESCRIBE_STRUCT(HoldJob, (), ())
 BOOST_DESCRIBE_STRUCT(ResumeJob, (), ())
 BOOST_DESCRIBE_STRUCT(StopJob, (), ())

@@ -117,6 +117,13 @@ struct LineRefused {
 };
 BOOST_DESCRIBE_STRUCT(LineRefused, (), (purpose, refusal, latched_repeat, explanation))
 
+/// `(MSG,…)` of the program, on a controller that drops comments. Others say it themselves.
+struct ProgramSpoke {
+  std::uint32_t file_line = 0;
+  std::string text;
+};
+BOOST_DESCRIBE_STRUCT(ProgramSpoke, (), (file_line, text))
+
 struct JobStarted {
   std::string program;
 };
@@ -185,6 +192,6 @@ using Event =
     std::variant<LineSent, LineReceived, HandshakeMoved, HandshakeNoted, ControllerReset, ControllerBusy,
                  ControllerFound, HandshakeFailed, StatusReported, ControllerRestarted, LinesLost, AlarmRaised,
                  LineRefused, JobStarted, JobProgressed, JobEnded, CommandRefused, LinkSilent, LinkAnswering,
-                 SettingWritten, SettingsChanged, SettingsDrifted, PendantTookOver, PendantReleased>;
+                 SettingWritten, SettingsChanged, SettingsDrifted, PendantTookOver, PendantReleased, ProgramSpoke>;
 
 }  // namespace kerf::session

@@ -31,14 +31,10 @@ template <typename T>
 void write_command(std::string& out, const T& command) {
   write_members(out, command);
 }
-void write_command(std::string&, const StartJob&) {}
 
 template <typename T>
 bool read_command(const JsonValue& json, T& command) {
   return read(json, command);
-}
-bool read_command(const JsonValue&, StartJob&) {
-  return true;
 }
 
 void write_what(std::string& out, const CommandGiven& given) {

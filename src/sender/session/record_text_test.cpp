@@ -75,6 +75,11 @@ TEST(RecordText, NoOptionIsForgotten) {
   static_cast<void>(reset_policy);
   static_cast<void>(enumerate);
   static_cast<void>(automatic_reports);
+  const auto& [on_error, flow, optional_stop, block_delete] = JobOptions{};
+  static_cast<void>(on_error);
+  static_cast<void>(flow);
+  static_cast<void>(optional_stop);
+  static_cast<void>(block_delete);
 }
 
 TEST(RecordText, SaysWhyALineIsNoRecord) {

@@ -61,7 +61,7 @@ void RecordedSession::on_closed(Instant now, LinkLoss loss) {
 void RecordedSession::submit(Instant now, const Command& command) {
   if (const auto* start = std::get_if<StartJob>(&command)) {
     note_program(now, *start);
-    note(now, CommandGiven{StartJob{}});
+    note(now, CommandGiven{StartJob{.options = start->options}});
     journal_.on_command(now, command);
   } else {
     Command given = masked(command, mask_);

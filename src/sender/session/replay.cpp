@@ -82,9 +82,9 @@ Replay::Stop Replay::follow(Instant at, const ProgramLoaded& loaded) {
 
 Replay::Stop Replay::follow(Instant at, const CommandGiven& given) {
   ++tally_.commands;
-  if (std::holds_alternative<StartJob>(given.command)) {
+  if (const auto* start = std::get_if<StartJob>(&given.command)) {
     if (!program_) return stop(ReplayEnd::ProgramMissing, at);
-    session_->submit(at, StartJob{program_});
+    session_->submit(at, StartJob{.program = program_, .options = start->options});
   } else {
     session_->submit(at, given.command);
   }

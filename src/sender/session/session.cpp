@@ -140,6 +140,7 @@ void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& l
                                              .text = line->text,
                                              .error_code = error_code,
                                              .meaning = meaning});
+      tell_program_messages(line->file_line);
       break;
     case Purpose::JobSync:
       if (has_job()) job_->on_sync_answered(now);
@@ -186,7 +187,7 @@ void Session::on_report(Instant now, MachineState before) {
   if (changes_settings()) settings_change_->on_report(now, snapshot());
   stop_.on_snapshot(now, snapshot());
   if (!has_job()) return;
-  job_->on_snapshot(now, snapshot());
+  job_->on_snapshot(now, snapshot(), ledger().empty() ? std::string_view{} : ledger().oldest().text);
   if (has_job()) tell(JobProgressed{job_->state()});
 }
 
@@ -312,11 +313,23 @@ void Session::obey_job(Instant now, job::JobOrder order) {
       streamer_.stop_feeding();
       streamer_.drop_queued(Purpose::JobSync);
       return;
+    case job::JobOrder::HoldFeeding: streamer_.hold_feeding(true); return;
+    case job::JobOrder::FeedAgain: streamer_.feed_from(feed_->lines_from(job_->goes_on_at())); return;
     case job::JobOrder::SendSync: streamer_.enqueue(Purpose::JobSync, std::string{kSyncLine}); return;
     case job::JobOrder::ClearLatch: streamer_.enqueue(Purpose::ClearLatch, ""); return;
     case job::JobOrder::FeedHold: send_byte(Realtime::FeedHold); return;
     case job::JobOrder::CycleStart: send_byte(Realtime::CycleStart); return;
     case job::JobOrder::SoftReset: reset_controller(now); return;
+    case job::JobOrder::AnnounceReset:
+      tell(ControllerReset{"Line " + std::to_string(job_->state().refusal->file_line) +
+                           " was refused: the machine is held and then reset, so that nothing behind it is cut."});
+      return;
+  }
+}
+
+void Session::tell_program_messages(std::uint32_t acknowledged_line) {
+  for (auto& message : feed_->flow()->take_messages(acknowledged_line)) {
+    tell(ProgramSpoke{.file_line = message.file_line, .text = std::move(message.text)});
   }
 }
 

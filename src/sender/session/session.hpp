@@ -24,6 +24,7 @@
 #include "sender/session/command.hpp"
 #include "sender/session/event.hpp"
 #include "sender/session/incidents.hpp"
+#include "sender/session/job_feed.hpp"
 #include "sender/session/line_gate.hpp"
 #include "sender/session/pendant_watch.hpp"
 #include "sender/session/settings_change.hpp"
@@ -143,6 +144,7 @@ class Session {
   void follow_settings(Instant now);
   void on_operator_line_accepted(Instant now, std::string_view text);
   void tell_drift();
+  void tell_program_messages(std::uint32_t acknowledged_line);
   [[nodiscard]] std::vector<std::string> settings_queries() const;
   void pump(Instant now);
   void poll(Instant now);
@@ -186,6 +188,8 @@ class Session {
   /// Begins when the controller has told what stands before its first line, and is given up at `start_until_`.
   std::optional<StartJob> waiting_start_;
   Instant start_until_ = kNever;
+  /// What the job's lines come from.
+  std::optional<JobFeed> feed_;
   /// Of motion that is no job's.
   job::StopSequence stop_;
   bool last_line_jogs_ = false;

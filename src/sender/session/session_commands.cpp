@@ -9,10 +9,8 @@
 #include <variant>
 
 #include "common/base/text.hpp"
-#include "sender/job/wire_form.hpp"
 #include "sender/machine/realtime_alphabet.hpp"
 #include "sender/machine/rest.hpp"
-#include "sender/session/program_lines.hpp"
 #include "sender/session/refusals.hpp"
 #include "sender/session/session.hpp"
 
@@ -71,8 +69,8 @@ void Session::obey(Instant now, const StartJob& command) {
     refuse(*reason);
     return;
   }
-  const auto form = job::wire_form_of(dialect());
-  const auto longest = command.program->longest_line(form.keeps_messages);
+  const JobFeed feed{command.program, dialect(), capabilities().features.tool_change, command.options};
+  const auto longest = command.program->longest_line(feed.form().keeps_messages);
   if (longest.length > longest_line_taken()) {
     refuse(Refused::LineTooLong, command.program->name() + ", line " + std::to_string(longest.number) + " has " +
                                      std::to_string(longest.length) + " characters and this controller takes " +
@@ -110,10 +108,15 @@ void Session::begin_waiting_job(Instant now) {
 void Session::begin_job(Instant now, const StartJob& command) {
   if (dialect().error_latch) streamer_.enqueue(Purpose::ClearLatch, "");
   incidents_.start_from(snapshot(), capabilities(), dialect());
-  streamer_.feed_from(std::make_unique<ProgramLines>(command.program, job::wire_form_of(dialect())));
-  job_.emplace(now, *command.program, dialect().error_latch, command.timeline);
+  feed_.emplace(command.program, dialect(), capabilities().features.tool_change, command.options);
+  streamer_.feed_by(command.options.flow);
+  streamer_.feed_from(feed_->lines_from(1));
+  const job::JobTerms terms{
+      .has_error_latch = dialect().error_latch, .on_error = command.options.on_error, .flow = feed_->flow()};
+  job_.emplace(now, *command.program, terms, command.timeline);
   job_state_ = job_->state();
   tell(JobStarted{command.program->name()});
+  tell_program_messages(0);
 }
 
 std::optional<Refused> Session::why_no_line(Instant now, std::string_view text) const {

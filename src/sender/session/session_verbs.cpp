@@ -53,7 +53,8 @@ void Session::obey(Instant now, const ResumeJob&) {
     refuse(Refused::PendantInControl);
     return;
   }
-  if (stop_.is_under_way() || !machine::can_resume(snapshot()) || (has_job() && !job_->can_resume())) {
+  const bool can_resume = has_job() ? job_->can_resume() : machine::can_resume(snapshot());
+  if (stop_.is_under_way() || !can_resume) {
     refuse(Refused::NotAtRest);
     return;
   }

@@ -17,6 +17,7 @@ void Streamer::enqueue(Purpose purpose, std::string text) {
 
 void Streamer::feed_from(std::unique_ptr<LineSource> source) {
   source_ = std::move(source);
+  feeding_held_ = false;
 }
 
 void Streamer::stop_feeding() {
@@ -56,7 +57,8 @@ std::vector<OwedLine> Streamer::pump(Instant now, std::string& out) {
     line.text = std::move(queued.text);
     sent.push_back(send(now, out, std::move(line)));
   }
-  while (source_) {
+  while (source_ && !feeding_held_) {
+    if (flow_ == FlowPolicy::OneAtATime && !ledger_.empty()) break;
     const auto next = source_->next();
     if (!next || !has_room_for(next->text)) break;
     OwedLine line;
@@ -82,7 +84,7 @@ std::vector<OwedLine> Streamer::strike_out() {
 }
 
 bool Streamer::source_exhausted() {
-  return !source_ || !source_->next();
+  return !source_ || feeding_held_ || !source_->next();
 }
 
 bool Streamer::done_with(Purpose purpose) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
+#include "sender/streaming/flow_policy.hpp"
 #include "sender/streaming/ledger.hpp"
 #include "sender/streaming/line_source.hpp"
 #include "sender/streaming/solo_lines.hpp"
@@ -32,6 +33,10 @@ class Streamer {
   void feed_from(std::unique_ptr<LineSource> source);
   /// No more lines from the source.
   void stop_feeding();
+  /// While held the source keeps its next line.
+  void hold_feeding(bool held) { feeding_held_ = held; }
+  /// How the source is fed; single lines are not meant.
+  void feed_by(FlowPolicy flow) { flow_ = flow; }
   /// Forgets single lines that have not been sent.
   void drop_queued(Purpose purpose);
   /// While paused no line leaves at all.
@@ -45,7 +50,7 @@ class Streamer {
   [[nodiscard]] std::vector<OwedLine> strike_out();
 
   [[nodiscard]] const Ledger& ledger() const { return ledger_; }
-  /// The source has given its last line, or there is none.
+  /// The source has no line to give, now or at all.
   [[nodiscard]] bool source_exhausted();
   /// Nothing is queued, fed or unanswered.
   [[nodiscard]] bool is_idle() const { return queue_.empty() && !source_ && ledger_.empty(); }
@@ -68,6 +73,8 @@ class Streamer {
   std::unique_ptr<LineSource> source_;
   bool solo_under_way_ = false;
   bool paused_ = false;
+  bool feeding_held_ = false;
+  FlowPolicy flow_ = FlowPolicy::CharacterCounting;
 };
 
 }  // namespace kerf::streaming
