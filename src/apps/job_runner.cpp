@@ -105,8 +105,8 @@ void JobRunner::on(const session::ControllerFound& found) {
   view_.found(found.sentence, capabilities);
   host_->submit(session::StartJob{.program = program_,
                                   .timeline = rehearse(*program_, capabilities, clock_speed(url_)),
-                                  .options = options_,
-                                  .origin = origin_});
+                                  .origin = origin_,
+                                  .options = options_});
 }
 
 void JobRunner::on(const session::ControllerReset& reset) {

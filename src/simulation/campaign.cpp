@@ -92,7 +92,7 @@ class CampaignRun {
   bool start() {
     auto program = job::Program::load("part.nc", made_up_.program);
     if (!program) return false;
-    world_.submit(session::StartJob{.program = *program});
+    world_.submit(session::StartJob{.program = *program, .options = {.on_error = job::ErrorPolicy::Stop}});
     // Behind lines by hand it begins a little later.
     const bool began = run_until([this] { return world_.session().job().has_value(); }, kConnectLimit);
     job_began_ = world_.now();

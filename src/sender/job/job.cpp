@@ -110,7 +110,6 @@ void Job::refuse(Instant now, const JobAnswer& answer) {
   order(JobOrder::HoldFeeding);
   if (goes_on_) return;
   if (terms_.on_error == ErrorPolicy::Stop) {
-    order(JobOrder::AnnounceReset);
     stop(now);
     return;
   }
@@ -366,7 +365,10 @@ void Job::abort(Instant now) {
 
 void Job::obey_stop() {
   if (stop_.position_suspect()) state_.position_suspect = true;
+  // The operator knows of the stop that he asked for.
+  const bool by_policy = account_ && terms_.on_error == ErrorPolicy::Stop;
   for (const StopOrder what : stop_.take_orders()) {
+    if (what == StopOrder::SoftReset && by_policy) order(JobOrder::AnnounceReset);
     order(what == StopOrder::FeedHold ? JobOrder::FeedHold : JobOrder::SoftReset);
   }
 }

@@ -50,6 +50,8 @@ TEST(Replay, PasswordsAreInNoEvent) {
   for (const char* line : {"$75=hunter3", "$75"}) talk.submit(SendLine{line});
   talk.run("$75=hunter3\n");
   talk.pass(5s);
+  talk.submit(StopJob{});
+  talk.pass(20s);
   ASSERT_FALSE(talk.told<LineRefused>().empty());
   for (const auto& refused : talk.told<LineRefused>()) EXPECT_EQ(refused.refusal.text, "$75=*******");
   ASSERT_FALSE(talk.told<JobEnded>().empty());
