@@ -63,6 +63,9 @@ std::string held_sentence(const job::JobState& job) {
     case job::HoldCause::Refusal:
       return fmt::format("Line {} was refused ({}). Continue leaves it out; stop keeps the position.",
                          job.refusal->file_line, job.refusal->meaning);
+    case job::HoldCause::Stall:
+      return job.stall && job.stall->goes_on_at ? "Answers got lost; going on is safe."
+                                                : "Answers got lost; only a stop is safe.";
     default: return "The machine stands still.";
   }
 }
@@ -171,6 +174,10 @@ void JobRunner::on(const session::LineRefused& refused) {
 
 void JobRunner::on(const session::ProgramSpoke& spoke) {
   view_.machine_said(spoke.text);
+}
+
+void JobRunner::on(const session::JobStalled& stalled) {
+  view_.stalled(stalled.stall);
 }
 
 void JobRunner::on(const session::CommandRefused& refused) {

@@ -50,6 +50,7 @@ class JobRunner {
   void on(const session::JobEnded& ended);
   void on(const session::LineRefused& refused);
   void on(const session::ProgramSpoke& spoke);
+  void on(const session::JobStalled& stalled);
   void on(const session::CommandRefused& refused);
   void on(const session::SettingsDrifted& drift);
   void on(const session::LinkSilent& silent);

@@ -43,6 +43,13 @@ std::vector<std::string> alarm_lines(const session::AlarmRaised& alarm) {
   return lines;
 }
 
+std::vector<std::string> stall_lines(const job::Stall& stall) {
+  std::vector<std::string> lines{stall.headline};
+  for (const std::string& fact : stall.evidence) lines.push_back("  " + fact);
+  for (const std::string& step : stall.steps) lines.push_back("  -> " + step);
+  return lines;
+}
+
 std::string started_sentence(const job::JobState& job) {
   return fmt::format("Cutting {}, {} lines.", job.program, job.progress.lines_total);
 }
@@ -67,6 +74,9 @@ class TerminalView final : public JobView {
 
   void alarm_raised(const session::AlarmRaised& alarm) override {
     for (const std::string& text : alarm_lines(alarm)) line(text);
+  }
+  void stalled(const job::Stall& stall) override {
+    for (const std::string& text : stall_lines(stall)) line(text);
   }
   void line_refused(const session::LineRefused& refused) override { line(refused.explanation.headline); }
   void asked(const job::JobState&, std::string_view question) override {
@@ -147,6 +157,9 @@ class LineView final : public JobView {
   void alarm_raised(const session::AlarmRaised& alarm) override {
     for (const std::string& text : alarm_lines(alarm)) line(text);
   }
+  void stalled(const job::Stall& stall) override {
+    for (const std::string& text : stall_lines(stall)) line(text);
+  }
   void line_refused(const session::LineRefused& refused) override { line(refused.explanation.headline); }
   void asked(const job::JobState&, std::string_view question) override { line(question); }
 
@@ -200,6 +213,7 @@ class JsonView final : public JobView {
           {"text", alarm.text},
           {"explanation", io::to_json(alarm.explanation)}});
   }
+  void stalled(const job::Stall& stall) override { emit({{"event", "stalled"}, {"stall", io::to_json(stall)}}); }
   void line_refused(const session::LineRefused& refused) override {
     emit({{"event", "line_refused"},
           {"refusal", io::to_json(refused.refusal)},
@@ -235,6 +249,7 @@ class JsonView final : public JobView {
   static io::Json progress_of(const job::JobState& job, const machine::Snapshot& snapshot) {
     io::Json json{{"event", "progress"}, {"phase", io::to_json(job.phase)}, {"state", io::to_json(snapshot.state)}};
     json.update(io::to_json(job.progress));
+    if (job.stall) json["waits_for"] = io::to_json(job.stall->cause);
     if (snapshot.feed_mm_per_min) json["feed_mm_per_min"] = *snapshot.feed_mm_per_min;
     if (snapshot.machine_position_mm) json["machine_position_mm"] = *snapshot.machine_position_mm;
     if (snapshot.work_position_mm) json["work_position_mm"] = *snapshot.work_position_mm;

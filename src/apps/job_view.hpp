@@ -29,6 +29,8 @@ class JobView {
   /// Called often; the view decides how often it shows something.
   virtual void progressed(const job::JobState& job, const machine::Snapshot& snapshot) = 0;
   virtual void alarm_raised(const session::AlarmRaised& alarm) = 0;
+  /// Answers are missing: why, and the safe way on.
+  virtual void stalled(const job::Stall& stall) = 0;
   virtual void line_refused(const session::LineRefused& refused) = 0;
   /// The job stands still and the operator decides; the answer is a key.
   virtual void asked(const job::JobState& job, std::string_view question) = 0;

@@ -195,7 +195,7 @@ void Job::follow_motion(Instant now, const machine::Snapshot& snapshot, std::str
   const bool rests = machine::is_at_rest(snapshot);
   switch (snapshot.state) {
     case MachineState::Hold:
-      if (!may_hold || now < deaf_to_hold_until_ || is_at_operators_gate()) return;
+      if (!may_hold || now < deaf_to_hold_until_ || waits_while_idle()) return;
       enter(now, rests ? JobPhase::Held : JobPhase::Holding, cause_of_hold(snapshot, awaited), rests);
       return;
     case MachineState::Door:
@@ -216,7 +216,7 @@ void Job::follow_motion(Instant now, const machine::Snapshot& snapshot, std::str
       if (asks_about_refusal()) return enter(now, JobPhase::Held, HoldCause::Refusal, true);
       [[fallthrough]];
     case MachineState::Idle:
-      if (is_at_operators_gate()) return;
+      if (waits_while_idle()) return;
       if (waiting_ == Waiting::ForToolState && now - tool_line_answered_at_ >= kToolStateDelay) follow_tool_gate(now);
       if (waiting_ == Waiting::ForRest && !hold_ordered_) return follow_rest(now);
       break;
@@ -283,6 +283,15 @@ void Job::on_lines_lost(std::uint32_t first_file_line, std::uint32_t lines) {
   aftermath.lines_not_executed += lines;
 }
 
+void Job::hold_for(Instant now, Stall stall) {
+  if (ended() || state_.phase == JobPhase::Stopping) return;
+  feeding_held_ = true;
+  account_.reset();
+  order(JobOrder::HoldFeeding);
+  enter(now, JobPhase::Held, HoldCause::Stall, stall.goes_on_at.has_value());
+  state_.stall = std::move(stall);
+}
+
 void Job::on_welcome(Instant now) {
   if (ended()) return;
   if (state_.phase == JobPhase::Stopping) {
@@ -321,7 +330,7 @@ void Job::set_executing(const ExecutingLines& lines) {
 
 void Job::hold(Instant now) {
   // At a tool change by the operator the machine is idle and stands.
-  if (ended() || state_.phase == JobPhase::Stopping || is_at_operators_gate()) return;
+  if (ended() || state_.phase == JobPhase::Stopping || waits_while_idle()) return;
   order_hold(now);
   hold_asked_ = true;
   if (state_.phase == JobPhase::Running) enter(now, JobPhase::Holding, HoldCause::FeedHold);
@@ -335,6 +344,16 @@ void Job::resume(Instant now) {
     terms_.flow->pass_gate();
     state_.tool_change.reset();
     waiting_ = Waiting::ForLines;
+    enter(now, JobPhase::Running);
+    return;
+  }
+  if (state_.hold_cause == HoldCause::Stall) {
+    goes_on_at_ = *state_.stall->goes_on_at;
+    state_.stall.reset();
+    feeding_held_ = false;
+    waiting_ = Waiting::ForLines;
+    if (terms_.flow) terms_.flow->go_back_to(goes_on_at_);
+    order(JobOrder::FeedAgain);
     enter(now, JobPhase::Running);
     return;
   }

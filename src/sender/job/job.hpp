@@ -70,6 +70,10 @@ class Job {
   void on_alarm(Instant now, int code, std::string_view meaning);
   /// The controller forgot everything that it had not answered: reset, critical alarm or flush.
   void on_lines_lost(std::uint32_t first_file_line, std::uint32_t lines);
+  /// What answers are waited for, as of now; empty when they come.
+  void on_stall(std::optional<Stall> stall) { state_.stall = std::move(stall); }
+  /// Lines lost their answers: the operator decides. Going on is possible where the stall says with which line.
+  void hold_for(Instant now, Stall stall);
   void on_welcome(Instant now);
   void on_link_closed(Instant now);
   /// The machine is not where the program says: it is held, and the operator decides.
@@ -115,6 +119,10 @@ class Job {
   [[nodiscard]] HoldCause cause_of_hold(const machine::Snapshot& snapshot, std::string_view awaited) const;
   void follow_run(Instant now);
   [[nodiscard]] bool is_at_operators_gate() const;
+  /// Held by Kerf while the machine is idle.
+  [[nodiscard]] bool waits_while_idle() const {
+    return is_at_operators_gate() || (state_.phase == JobPhase::Held && state_.hold_cause == HoldCause::Stall);
+  }
   [[nodiscard]] bool asks_about_refusal() const { return feeding_held_ && !goes_on_; }
   /// A job that ends because of a refused line says so.
   [[nodiscard]] JobPhase stopped_phase() const { return account_ ? JobPhase::Refused : JobPhase::Stopped; }

@@ -12,6 +12,7 @@
 #include "sender/job/path_follower.hpp"
 #include "sender/job/program_flow.hpp"
 #include "sender/job/progress.hpp"
+#include "sender/job/stall_diagnosis.hpp"
 
 namespace kerf::job {
 
@@ -45,8 +46,9 @@ enum class HoldCause {
   SingleBlock,   ///< the controller stops behind every line
   Refusal,       ///< a line was refused, and the operator is asked
   OffPath,       ///< the machine is not where the program says
+  Stall,         ///< answers got lost, and the operator is asked
 };
-BOOST_DESCRIBE_ENUM(HoldCause, None, FeedHold, Door, ToolChange, ProgramPause, SingleBlock, Refusal, OffPath)
+BOOST_DESCRIBE_ENUM(HoldCause, None, FeedHold, Door, ToolChange, ProgramPause, SingleBlock, Refusal, OffPath, Stall)
 
 /// Lines sent whose fate matters after a refusal, an alarm or an interruption.
 struct Aftermath {
@@ -73,6 +75,8 @@ struct JobState {
   std::uint32_t lines_refused = 0;
   /// The tool change at which it stands.
   std::optional<ToolGate> tool_change;
+  /// Why no answer comes.
+  std::optional<Stall> stall;
   /// The line that ended the program (M2, M30, `%`); what the file holds behind it was not sent.
   std::uint32_t end_line = 0;
   std::optional<int> alarm_code;
@@ -86,7 +90,7 @@ struct JobState {
   bool operator==(const JobState&) const = default;
 };
 BOOST_DESCRIBE_STRUCT(JobState, (),
-                      (program, phase, hold_cause, progress, refusal, lines_refused, tool_change, end_line, alarm_code,
-                       departure, aftermath, position_suspect, reason))
+                      (program, phase, hold_cause, progress, refusal, lines_refused, tool_change, stall, end_line,
+                       alarm_code, departure, aftermath, position_suspect, reason))
 
 }  // namespace kerf::job

@@ -131,6 +131,12 @@ struct ProgramSpoke {
 };
 BOOST_DESCRIBE_STRUCT(ProgramSpoke, (), (file_line, text))
 
+/// Answers are missing, and waiting does not help: the cause, what shows it, and the safe way on.
+struct JobStalled {
+  job::Stall stall;
+};
+BOOST_DESCRIBE_STRUCT(JobStalled, (), (stall))
+
 struct JobStarted {
   std::string program;
 };
@@ -206,6 +212,6 @@ using Event = std::variant<LineSent, LineReceived, HandshakeMoved, HandshakeNote
                            ControllerBusy, ControllerFound, HandshakeFailed, StatusReported, ControllerRestarted,
                            LinesLost, AlarmRaised, LineRefused, JobStarted, JobProgressed, JobEnded, CommandRefused,
                            LinkSilent, LinkAnswering, SettingWritten, SettingsChanged, SettingsDrifted, PendantTookOver,
-                           PendantReleased, PathUnwatched, ProgramSpoke>;
+                           PendantReleased, PathUnwatched, ProgramSpoke, JobStalled>;
 
 }  // namespace kerf::session

@@ -1,5 +1,6 @@
 #include "sender/session/incidents.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "common/protocol/secrets.hpp"
@@ -84,6 +85,31 @@ Incident Incidents::refused(int code, const streaming::OwedLine& line, const mac
           .culprit = line_of(line, true),
           .targets_mm = tracker_.targets_of(line.text),
           .before = before};
+}
+
+std::optional<std::size_t> Incidents::lines_behind(const std::vector<streaming::OwedLine>& owed,
+                                                   const std::vector<double>& position_mm) const {
+  // Steps round positions; less than this is no motion that matters.
+  constexpr double kSamePlace_mm = 0.02;
+  machine::LineTracker reader = tracker_;
+  const auto stands_there = [&] {
+    for (std::size_t axis = 0; axis < position_mm.size(); ++axis) {
+      const double at = static_cast<double>(reader.reader()->state().position_mm.at(axis));
+      if (std::abs(at - position_mm[axis]) > kSamePlace_mm) return false;
+    }
+    return true;
+  };
+  std::optional<std::size_t> behind;
+  for (std::size_t count = 0;; ++count) {
+    if (!reader.knows()) return std::nullopt;
+    if (stands_there()) {
+      // Lines that move nothing leave no trace: only the last of all is believed of them.
+      if (behind && count != owed.size()) return std::nullopt;
+      behind = count;
+    }
+    if (count == owed.size()) return behind;
+    if (is_evidence(owed[count].purpose)) reader.on_accepted(owed[count].text);
+  }
 }
 
 }  // namespace kerf::session

@@ -30,6 +30,11 @@ class Incidents {
   [[nodiscard]] machine::Incident refused(int code, const streaming::OwedLine& line,
                                           const machine::Snapshot& before) const;
 
+  /// Behind how many of `owed`, which follow the lines accepted so far, a machine at `position_mm` stands; empty where
+  /// that is not known or fits more than one.
+  [[nodiscard]] std::optional<std::size_t> lines_behind(const std::vector<streaming::OwedLine>& owed,
+                                                        const std::vector<double>& position_mm) const;
+
   /// The alarm that holds the machine, as it was when it came.
   [[nodiscard]] const std::optional<machine::Incident>& alarm() const { return alarm_; }
   void clear_alarm() { alarm_.reset(); }

@@ -55,6 +55,10 @@ std::string_view sentence_of(job::HoldCause cause) {
   switch (cause) {
     case job::HoldCause::Door: return "The safety door is open.";
     case job::HoldCause::ToolChange: return "The machine waits for a tool.";
+    case job::HoldCause::ProgramPause: return "The program pauses.";
+    case job::HoldCause::SingleBlock: return "Single block: the machine stops behind every line.";
+    case job::HoldCause::Refusal: return "A line was refused; the operator is asked.";
+    case job::HoldCause::Stall: return "Answers got lost; the operator is asked.";
     default: return "Held.";
   }
 }
@@ -124,6 +128,10 @@ class JobRecorder::Listener {
     note(NoteKind::ControllerStarted, 0,
          restarted.asked ? "The controller restarted, as asked." : "The controller restarted by itself.");
   }
+  void operator()(const JobStalled& stalled) const {
+    note(NoteKind::Stalled, stalled.stall.file_line, stalled.stall.headline);
+  }
+  void operator()(const ProgramSpoke& spoke) const { note(NoteKind::Message, spoke.file_line, spoke.text); }
   void operator()(const LinkSilent& silent) const {
     note(NoteKind::LinkSilent, 0, "No answer for " + base::to_fixed(silent.silent_for_s, 1) + " s.");
   }

@@ -103,6 +103,7 @@ void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
   if (std::holds_alternative<protocol::AlarmRaised>(received.message)) before_alarm = snapshot();
   const bool for_kerf = is_for_kerf(received.message);
   model_.fold(now, received.message);
+  if (std::holds_alternative<protocol::ParserState>(received.message)) on_parser_state(now);
   std::optional<streaming::OwedLine> answers;
   if (protocol::is_answer(received.message) && !reset_pending_until_) answers = streamer_.settle();
   tell(LineReceived{.message = received.message, .raw = received.raw, .answers = answers, .for_kerf = for_kerf});
@@ -128,6 +129,11 @@ void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
 void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code) {
   if (!line) return;
   gate_.on_activity(now);
+  if (error_code != 0 && line->purpose != Purpose::Proof && stall_.proof() == job::StallProof::Asked) {
+    on_line_end_lost(now, *line);
+    return;
+  }
+  stall_.on_progress(now);
   on_jog_answered(*line);
   if (error_code == 0) {
     model_.on_line_accepted(line->text);
@@ -161,7 +167,8 @@ void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& l
     case Purpose::Operator:
       if (error_code == 0) on_operator_line_accepted(now, line->text);
       break;
-    case Purpose::ClearLatch: break;
+    case Purpose::ClearLatch:
+    case Purpose::Proof: break;
   }
   if (error_code == 0) return;
   tell(LineRefused{
@@ -199,6 +206,7 @@ void Session::on_report(Instant now, MachineState before) {
   if (!has_job()) return;
   job_->on_snapshot(now, snapshot(), ledger().empty() ? std::string_view{} : ledger().oldest().text);
   follow_path(now, asked);
+  if (has_job()) watch_stall(now);
   if (has_job()) tell(JobProgressed{job_->state()});
 }
 
@@ -349,6 +357,7 @@ void Session::pump(Instant now) {
   if (!open_ || snapshot().pendant_in_control) return;
   // Before that the handshake looks after it.
   if (is_ready() && gate_.verdict(now) != GateVerdict::Open) return;
+  if (ledger().empty()) stall_.on_progress(now);
   for (auto& line : streamer_.pump(now, outbox_.lines)) {
     if (line.purpose != Purpose::Question) gate_.on_activity(now);
     if (has_job() && acts(line.purpose)) path_.on_sent(line.file_line, line.text);

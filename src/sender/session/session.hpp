@@ -147,6 +147,11 @@ class Session {
   void follow_handshake(Instant now);
   void follow_job(Instant now);
   void follow_path(Instant now, std::optional<Instant> asked);
+  void watch_stall(Instant now);
+  void on_parser_state(Instant now);
+  void on_line_end_lost(Instant now, streaming::OwedLine line);
+  void hold_for_stall(Instant now, std::vector<streaming::OwedLine> lines, job::StallProof proof);
+  [[nodiscard]] job::StallFacts stall_facts() const;
   void obey_handshake(Instant now, const machine::HandshakeOrder& order);
   void obey_job(Instant now, job::JobOrder order);
   void follow_stop(Instant now);
@@ -199,6 +204,7 @@ class Session {
   /// Begins when the controller has told what stands before its first line, and is given up at `start_until_`.
   std::optional<StartJob> waiting_start_;
   Instant start_until_ = kNever;
+  job::StallWatch stall_;
   /// What the job's lines come from.
   std::optional<JobFeed> feed_;
   /// Of motion that is no job's.

@@ -46,7 +46,17 @@ void Session::poll(Instant now) {
   if (changes_settings() && settings_change_->is_storing()) return;
   if (poller_.is_due(now)) ask_for_reports(now);
   const auto silent_for_s = poller_.take_silence(now);
-  if (silent_for_s && !may_be_silent()) tell(LinkSilent{*silent_for_s});
+  if (!silent_for_s || may_be_silent()) return;
+  tell(LinkSilent{*silent_for_s});
+  if (has_job() && job_->state().hold_cause != job::HoldCause::Stall) {
+    job::StallFacts facts = stall_facts();
+    facts.link_is_dead = true;
+    facts.owed_lines = ledger().size();
+    facts.unanswered_s = *silent_for_s;
+    const auto stall = job::diagnose(facts);
+    job_->on_stall(stall);
+    tell(JobStalled{*stall});
+  }
 }
 
 void Session::ask_for_reports(Instant now) {

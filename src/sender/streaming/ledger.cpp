@@ -30,6 +30,18 @@ std::vector<OwedLine> Ledger::strike_out() {
   return lost;
 }
 
+std::vector<OwedLine> Ledger::strike_out_before(Purpose purpose) {
+  std::vector<OwedLine> lost;
+  if (!owes(purpose)) return lost;
+  while (owed_.front().purpose != purpose) {
+    bytes_ -= owed_.front().bytes;
+    lost.push_back(std::move(owed_.front()));
+    owed_.pop_front();
+  }
+  struck_out_ += lost.size();
+  return lost;
+}
+
 bool Ledger::owes(Purpose purpose) const {
   return std::ranges::any_of(owed_, [purpose](const OwedLine& line) { return line.purpose == purpose; });
 }

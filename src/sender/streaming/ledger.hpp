@@ -22,8 +22,9 @@ enum class Purpose {
   Operator,    ///< sent by hand
   Question,    ///< asked by Kerf itself
   Setting,     ///< part of a change of settings
+  Proof,       ///< a question behind lines that owe their answers
 };
-BOOST_DESCRIBE_ENUM(Purpose, JobLine, JobSync, ClearLatch, Operator, Question, Setting)
+BOOST_DESCRIBE_ENUM(Purpose, JobLine, JobSync, ClearLatch, Operator, Question, Setting, Proof)
 
 /// A line on its way. `bytes` counts what lies in the controller's buffer: text and line end.
 struct OwedLine {
@@ -51,6 +52,9 @@ class Ledger {
   /// Strikes out everything: a reset, a flush or a lost link means that no answers will come (protocol.md 4.4). Gives
   /// the lines lost.
   [[nodiscard]] std::vector<OwedLine> strike_out();
+
+  /// Strikes out what is older than the first line of `purpose`: their answers will not come any more.
+  [[nodiscard]] std::vector<OwedLine> strike_out_before(Purpose purpose);
 
   [[nodiscard]] bool empty() const { return owed_.empty(); }
   [[nodiscard]] std::size_t size() const { return owed_.size(); }

@@ -72,6 +72,13 @@ std::vector<OwedLine> Streamer::pump(Instant now, std::string& out) {
   return sent;
 }
 
+OwedLine Streamer::interject(Instant now, std::string& out, Purpose purpose, std::string text) {
+  OwedLine line;
+  line.purpose = purpose;
+  line.text = std::move(text);
+  return send(now, out, std::move(line));
+}
+
 std::optional<OwedLine> Streamer::settle() {
   auto line = ledger_.settle();
   if (ledger_.empty()) solo_under_way_ = false;

@@ -44,10 +44,13 @@ class Streamer {
 
   /// Appends to `out` everything there is room for; gives the lines that went.
   std::vector<OwedLine> pump(Instant now, std::string& out);
+  /// Sends one line past the queue and beside the window: only to a controller that has read everything before.
+  OwedLine interject(Instant now, std::string& out, Purpose purpose, std::string text);
   /// The answer to the oldest line has come.
   [[nodiscard]] std::optional<OwedLine> settle();
   /// No answers will come for what is on its way (protocol.md 4.4). Lines in the queue stay there.
   [[nodiscard]] std::vector<OwedLine> strike_out();
+  [[nodiscard]] std::vector<OwedLine> strike_out_before(Purpose purpose) { return ledger_.strike_out_before(purpose); }
 
   [[nodiscard]] const Ledger& ledger() const { return ledger_; }
   /// The source has no line to give, now or at all.
