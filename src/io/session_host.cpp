@@ -64,6 +64,8 @@ SessionHost::~SessionHost() {
   callbacks_ = {};  // whoever listened may be half gone
   session_.on_closed(loop_.now(), session::LinkLoss::HungUp);
   write_down();
+  session::Outbox last = session_.take_outbox();
+  if (journal_) journal_->append(std::move(last.journal));
 }
 
 void SessionHost::submit(const session::Command& command) {
