@@ -66,6 +66,9 @@ std::string held_sentence(const job::JobState& job) {
     case job::HoldCause::Stall:
       return job.stall && job.stall->goes_on_at ? "Answers got lost; going on is safe."
                                                 : "Answers got lost; only a stop is safe.";
+    case job::HoldCause::OffPath:
+      if (job.departure) return describe(*job.departure) + ": stop the job, home the machine and check the work zero.";
+      [[fallthrough]];
     default: return "The machine stands still.";
   }
 }
@@ -190,6 +193,10 @@ void JobRunner::on(const session::CommandRefused& refused) {
 
 void JobRunner::on(const session::LinkSilent& silent) {
   view_.noted(fmt::format("The machine has not answered for {:.0f} s: check cable and power.", silent.silent_for_s));
+}
+
+void JobRunner::on(const session::PathUnwatched& gap) {
+  view_.noted(gap.sentence);
 }
 
 void JobRunner::on(const session::LinkAnswering&) {

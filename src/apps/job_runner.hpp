@@ -54,6 +54,7 @@ class JobRunner {
   void on(const session::CommandRefused& refused);
   void on(const session::SettingsDrifted& drift);
   void on(const session::LinkSilent& silent);
+  void on(const session::PathUnwatched& gap);
   void on(const session::LinkAnswering& answering);
   template <typename Other>
   void on(const Other&) {}

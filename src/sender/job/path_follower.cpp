@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string_view>
 
 #include "common/base/text.hpp"
@@ -34,6 +35,8 @@ constexpr double kFeedSlack = 10.0;
 constexpr double kRpmTolerance = 0.02;
 constexpr double kRpmSlack = 2.0;
 constexpr double kPercent = 100.0;
+/// Departures of 0.05 mm are always seen where a step is smaller.
+constexpr double kWidest = 0.045;
 
 bool is_unknown(const PathPiece& piece, std::size_t axis) {
   return (piece.unknown_axes >> axis & 1U) != 0;
@@ -288,6 +291,15 @@ std::optional<PathDeparture> PathFollower::check_speeds(const PathForecast& fore
   strange.reported_mm = vector_of(report.machine_mm, report.axes);
   strange.expected_mm = strange.reported_mm;
   return strange;
+}
+
+// grblHAL begins the counters of its line algorithm anew when it goes on, so that the lesser axes may end up to a step
+// short, and nothing puts that right until the next homing (motion/rules.hpp).
+void PathFollower::on_stop(const PathRules& rules) {
+  if (!rules.motion.restart_resets_bresenham) return;
+  const double step_mm = (tolerance_mm(rules, false) - kFloatMm - kRoundings * kLastDigitMm) / std::numbers::sqrt3;
+  if (step_mm > 0)
+    rules_.tolerance_mm = std::max(rules_.tolerance_mm, std::min(rules_.tolerance_mm + step_mm, kWidest));
 }
 
 ExecutingLines PathFollower::executing(const PathForecast& forecast) const {

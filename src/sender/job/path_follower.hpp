@@ -82,6 +82,8 @@ class PathFollower {
   [[nodiscard]] std::optional<PathDeparture> on_report(PathForecast& forecast, PathReport report);
   /// Motion that the program does not know of (a door, parking): speeds are not compared until it is back.
   void on_interlude() { strange_speeds_ = 0; }
+  /// The machine was stopped in mid-motion: what its firmware loses by that is no departure.
+  void on_stop(const PathRules& rules);
   [[nodiscard]] ExecutingLines executing(const PathForecast& forecast) const;
 
  private:

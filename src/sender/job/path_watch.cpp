@@ -67,6 +67,9 @@ void PathWatch::on_answer(std::uint32_t file_line, int error_code) {
 
 std::optional<PathDeparture> PathWatch::on_report(Instant now, std::optional<Instant> asked,
                                                   const machine::Snapshot& snapshot) {
+  const bool stands = snapshot.state == MachineState::Hold || snapshot.state == MachineState::Door;
+  if (stands && !std::exchange(stands_, stands)) follower_.on_stop(forecast_.rules());
+  stands_ = stands;
   if (!snapshot.machine_position_mm || !follows_program(snapshot.state)) {
     follower_.on_interlude();
     return std::nullopt;

@@ -48,6 +48,7 @@ class PathWatch {
   PathFollower follower_;
   bool tells_work_position_ = false;
   bool gap_told_ = false;
+  bool stands_ = false;
 };
 
 }  // namespace kerf::job

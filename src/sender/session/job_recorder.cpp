@@ -59,6 +59,7 @@ std::string_view sentence_of(job::HoldCause cause) {
     case job::HoldCause::SingleBlock: return "Single block: the machine stops behind every line.";
     case job::HoldCause::Refusal: return "A line was refused; the operator is asked.";
     case job::HoldCause::Stall: return "Answers got lost; the operator is asked.";
+    case job::HoldCause::OffPath: return "The machine does something else than the program says.";
     default: return "Held.";
   }
 }
