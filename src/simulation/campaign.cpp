@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 
 #include "common/base/text.hpp"
+#include "sender/job/resume_facts.hpp"
+#include "sender/job/resume_plan.hpp"
 #include "simulation/cutter_watch.hpp"
 #include "simulation/dice.hpp"
 #include "simulation/undisturbed_job.hpp"
@@ -20,6 +23,9 @@ using session::SessionPhase;
 
 constexpr Duration kOperatorLooks = 50ms;
 constexpr Duration kConnectLimit = 60s;
+constexpr Duration kStartLimit = 20s;
+/// Homing finds a switch to within a few steps.
+constexpr int kSameSteps = 5;
 /// With feed overrides at 10 % and an operator who takes his time.
 constexpr int kSlowestJob = 15;
 constexpr Duration kPatience = 120s;
@@ -30,8 +36,9 @@ constexpr Duration kStuck = 25s;
 
 class CampaignRun {
  public:
-  CampaignRun(CampaignCase made_up, bool keep_transcript)
-      : made_up_(with_transcript(std::move(made_up), keep_transcript)),
+  CampaignRun(CampaignCase made_up, int most_resumes, bool keep_transcript)
+      : most_resumes_(most_resumes),
+        made_up_(with_transcript(std::move(made_up), keep_transcript)),
         wanted_(undisturbed(made_up_)),
         dice_(made_up_.seed ^ 0x9E3779B97F4A7C15U),
         world_(made_up_.world),
@@ -44,7 +51,7 @@ class CampaignRun {
     verdict_.complaints = wanted_.complaints;
     if (!verdict_.complaints.empty()) return finish();
     if (connect() && start()) {
-      run_job();
+      run_to_the_end();
     } else {
       complain("the machine was not ready for the job, although nothing had struck it");
     }
@@ -92,28 +99,138 @@ class CampaignRun {
   bool start() {
     auto program = job::Program::load("part.nc", made_up_.program);
     if (!program) return false;
-    world_.submit(session::StartJob{.program = *program, .options = {.on_error = job::ErrorPolicy::Stop}});
+    program_ = *program;
+    const bool began = start({.program = program_, .options = {.on_error = job::ErrorPolicy::Stop}});
+    for (const Fault& fault : made_up_.faults) due_.push_back({.at = job_began_ + instant_of(fault), .fault = &fault});
+    return began;
+  }
+
+  bool start(const session::StartJob& command) {
+    world_.submit(command);
+    is_killed_ = false;
     // Behind lines by hand it begins a little later.
-    const bool began = run_until([this] { return world_.session().job().has_value(); }, kConnectLimit);
-    job_began_ = world_.now();
+    const bool began = run_until([this] { return world_.session().job() && !is_over(); }, kStartLimit);
+    job_began_ = moved_on_at_ = world_.now();
     return began;
   }
 
   // --- the job ---
 
+  void run_to_the_end() {
+    for (;;) {
+      run_job();
+      if (!is_killed_ && phase() == JobPhase::Finished) {
+        verdict_.ending = verdict_.resumes == 0 ? CampaignEnding::Finished : CampaignEnding::Resumed;
+        return;
+      }
+      run_for(kAfterwards);
+      if (verdict_.resumes == most_resumes_) {
+        verdict_.ending = CampaignEnding::TooOften;
+        return;
+      }
+      put_everything_right();
+      if (!make_ready()) {
+        verdict_.ending = CampaignEnding::NotReady;
+        return;
+      }
+      if (!resume()) return;
+    }
+  }
+
+  // --- after an interruption ---
+
+  void put_everything_right() {
+    std::erase_if(due_, [](const Due& due) { return due.is_over; });
+    for (const char* const order : {"faults off", "link restore", "door close", "power on"}) must(order);
+    run_for(dice_.up_to(3s));
+  }
+
+  [[nodiscard]] bool is_idle() const {
+    return world_.session().phase() == SessionPhase::Ready &&
+           world_.session().snapshot().state == vocabulary::MachineState::Idle && world_.session().ledger().empty() &&
+           !watch_.is_moving();
+  }
+
+  bool make_ready() {
+    const auto ready = [this] { return world_.session().phase() == SessionPhase::Ready; };
+    if (is_killed_ || world_.session().phase() == SessionPhase::Closed) world_.open();
+    if (!run_until(ready, kConnectLimit)) {
+      note("the operator resets");
+      world_.submit(session::SoftReset{});
+      if (!run_until(ready, kConnectLimit)) return false;
+    }
+    run_for(1s);
+    if (world_.session().snapshot().state != vocabulary::MachineState::Idle &&
+        world_.session().snapshot().state != vocabulary::MachineState::Alarm) {
+      note("the operator resets");
+      world_.submit(session::SoftReset{});
+      run_for(5s);
+      if (!run_until(ready, kConnectLimit)) return false;
+    }
+    if (made_up_.homes) {
+      world_.submit(session::Home{});
+    } else if (world_.session().snapshot().state == vocabulary::MachineState::Alarm) {
+      world_.submit(session::Unlock{});
+    }
+    run_for(1s);
+    if (!run_until([this] { return is_idle(); }, kConnectLimit)) return false;
+    run_for(3s);
+    return is_idle();
+  }
+
+  /// Whether the controller's position is that of the motors.
+  [[nodiscard]] bool is_where_it_says() const {
+    const auto place = place_of(world_.controller());
+    const auto machine = world_.controller().position_steps();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (std::abs(place[axis] - wanted_.machine_zero[axis] - machine[axis]) > kSameSteps) return false;
+    }
+    return true;
+  }
+
+  bool resume() {
+    const std::vector<job::JobHistory> jobs = world_.journal().jobs();
+    if (jobs.empty()) {
+      verdict_.ending = CampaignEnding::NotInJournal;
+      return false;
+    }
+    const job::JobHistory* root = &jobs.back();
+    while (root->begun.origin.continues) root = &jobs.at(static_cast<std::size_t>(*root->begun.origin.continues) - 1);
+    const auto& session = world_.session();
+    const auto facts =
+        job::facts_of_job(jobs.back(), root->begun.machine, *program_, session.snapshot(), session.capabilities());
+    const auto plan = job::plan_resume(
+        *program_, facts, {.offsets = job::OffsetsChoice::AsThen, .position_is_confirmed = is_where_it_says()});
+    if (!plan) {
+      note("no plan: " + plan.error().sentence);
+      verdict_.refusal = boost::describe::enum_to_string(plan.error().problem, "?");
+      // A job of which nothing is left has been cut, whatever the journal calls it.
+      const bool is_done = plan.error().problem == job::ResumeProblem::NothingLeft;
+      verdict_.ending = is_done ? CampaignEnding::Resumed : CampaignEnding::Refused;
+      return false;
+    }
+    for (const std::string& line : job::text_of(*plan)) note("plan: " + line);
+    ++verdict_.resumes;
+    job::ResumedProgram resumed = job::resumed_program(*program_, *plan);
+    resumed.origin.continues = static_cast<std::int64_t>(jobs.size());
+    resumed.origin.file_hash = program_->hash();
+    if (start({.program = resumed.program, .origin = resumed.origin, .options = {.on_error = job::ErrorPolicy::Stop}}))
+      return true;
+    if (is_finished_at_once()) return true;
+    complain("a plan was made, and its job was not taken");
+    return false;
+  }
+
+  [[nodiscard]] bool is_finished_at_once() const { return world_.session().job() && phase() == JobPhase::Finished; }
+
   void run_job() {
     const Instant limit = job_began_ + kSlowestJob * wanted_.takes + kPatience;
-    for (const Fault& fault : made_up_.faults) due_.push_back({.at = job_began_ + instant_of(fault), .fault = &fault});
-    moved_on_at_ = world_.now();
     while (!is_over() && world_.now() < limit) {
       run_for(std::min(next_due() - world_.now(), kOperatorLooks));
       strike();
       operate();
     }
     if (!is_over()) complain("the job never came to an end; " + standing());
-    verdict_.ending =
-        is_killed_ || phase() != JobPhase::Finished ? CampaignEnding::Interrupted : CampaignEnding::Finished;
-    if (verdict_.ending == CampaignEnding::Interrupted) run_for(kAfterwards);
   }
 
   [[nodiscard]] Duration instant_of(const Fault& fault) const {
@@ -218,6 +335,9 @@ class CampaignRun {
       judge_cut();
     }
     verdict_.transcript = world_.transcript_text();
+    for (const auto& record : world_.log()) {
+      verdict_.transcript += base::to_fixed(base::to_seconds(record.at), 3) + " " + record.what + "\n";
+    }
     return std::move(verdict_);
   }
 
@@ -234,7 +354,8 @@ class CampaignRun {
       complain(std::to_string(difference.excess_cells) + " cells were cut that the job does not cut, one at " +
                text_of(difference.excess));
     }
-    if (verdict_.ending == CampaignEnding::Finished && difference.missing_cells > 0) {
+    const bool is_done = verdict_.ending == CampaignEnding::Finished || verdict_.ending == CampaignEnding::Resumed;
+    if (is_done && difference.missing_cells > 0) {
       complain(std::to_string(difference.missing_cells) + " cells were left uncut, one at " +
                text_of(difference.missing));
     }
@@ -261,12 +382,14 @@ class CampaignRun {
     bool is_over = false;
   };
 
+  int most_resumes_;
   CampaignCase made_up_;
   UndisturbedJob wanted_;
   Dice dice_;
   World world_;
   CutterWatch watch_;
   CampaignVerdict verdict_;
+  std::shared_ptr<const job::Program> program_;
   std::vector<Due> due_;
   Instant job_began_{};
   Instant moved_on_at_{};
@@ -277,8 +400,8 @@ class CampaignRun {
 
 }  // namespace
 
-CampaignVerdict judge(CampaignCase made_up, bool keep_transcript) {
-  return CampaignRun{std::move(made_up), keep_transcript}.run();
+CampaignVerdict judge(CampaignCase made_up, int most_resumes, bool keep_transcript) {
+  return CampaignRun{std::move(made_up), most_resumes, keep_transcript}.run();
 }
 
 }  // namespace kerf::simulation

@@ -25,8 +25,8 @@ TEST(Campaign, TheSameSeedGivesTheSameRun) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const CampaignCase made_up = campaign_case(seed);
     EXPECT_EQ(describe(made_up), describe(campaign_case(seed)));
-    const CampaignVerdict first = judge(made_up, true);
-    const CampaignVerdict second = judge(made_up, true);
+    const CampaignVerdict first = judge(made_up, 2, true);
+    const CampaignVerdict second = judge(made_up, 2, true);
     EXPECT_EQ(first.transcript, second.transcript);
     EXPECT_FALSE(first.transcript.empty());
     EXPECT_EQ(first.struck, second.struck);

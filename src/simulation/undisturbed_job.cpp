@@ -34,6 +34,7 @@ class Rehearsal {
     const auto machine = controller_.position_steps();
     const auto& offset = made_up_.world.stored.offsets.at("G54");
     for (std::size_t axis = 0; axis < offset.size(); ++axis) {
+      job_.machine_zero[axis] = job_.work_zero[axis] - machine[axis];
       job_.work_zero[axis] +=
           static_cast<std::int32_t>(std::lround(offset[axis] * kCampaignStepsPerMm)) - machine[axis];
     }

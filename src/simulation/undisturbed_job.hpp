@@ -13,7 +13,9 @@ namespace kerf::simulation {
 struct UndisturbedJob {
   Stock stock;
   Duration takes{};
+  /// In motor steps since the first power-on.
   vocabulary::AxisSteps work_zero{};
+  vocabulary::AxisSteps machine_zero{};
   /// Refused lines, and what the watch saw: the job itself is no good.
   std::vector<std::string> complaints;
 };

@@ -2,6 +2,7 @@
 //
 //   campaign --runs 10000 --seed 1 --jobs 2     seeds 1 to 10000; exit status 1 when one failed
 //   campaign --runs 10000 --seconds 150         as many of them as that time allows
+//   campaign --runs 10000 --resumes 0           nobody resumes what was interrupted
 //   campaign --replay 4711                      one seed, with everything that was said and done
 
 #include <algorithm>
@@ -33,6 +34,7 @@ struct Options {
   std::uint64_t jobs = std::max(1U, std::thread::hardware_concurrency());
   std::uint64_t seconds = 0;
   std::uint64_t replay = 0;
+  std::uint64_t resumes = 6;
 };
 
 /// What a worker has counted, one line `name<TAB>count` each, and what failed.
@@ -77,6 +79,8 @@ void enter(Tally& tally, const CampaignCase& made_up, const CampaignVerdict& ver
   tally.add("link " + name(made_up.link));
   tally.add("ending " + name(verdict.ending));
   if (verdict.unjudged) tally.add("cut not judged");
+  if (verdict.resumes > 0) tally.add("resumes", static_cast<std::uint64_t>(verdict.resumes));
+  if (!verdict.refusal.empty()) tally.add("no plan: " + verdict.refusal);
   for (const FaultKind kind : verdict.struck) {
     tally.add("fault " + std::string{name_of(kind)} + " on " + name(made_up.world.firmware));
   }
@@ -96,7 +100,7 @@ void work(const Options& options, std::uint64_t first, int out) {
     const std::string trying = "@" + std::to_string(options.seed + i) + "\n";
     static_cast<void>(!write(out, trying.data(), trying.size()));
     const CampaignCase made_up = campaign_case(options.seed + i);
-    enter(tally, made_up, judge(made_up));
+    enter(tally, made_up, judge(made_up, static_cast<int>(options.resumes)));
   }
   const std::string text = tally.text() + "@done\n";
   for (std::string_view rest = text; !rest.empty();) {
@@ -162,10 +166,10 @@ int run(const Options& options) {
   return tally.failures().empty() ? 0 : 1;
 }
 
-int replay(std::uint64_t seed) {
-  const CampaignCase made_up = campaign_case(seed);
+int replay(const Options& options) {
+  const CampaignCase made_up = campaign_case(options.replay);
   std::printf("%s\n\n%s\n", describe(made_up).c_str(), made_up.program.c_str());
-  const CampaignVerdict verdict = judge(made_up, true);
+  const CampaignVerdict verdict = judge(made_up, static_cast<int>(options.resumes), true);
   std::printf("%s\n", verdict.transcript.c_str());
   std::printf("%s after %.1f s\n", name(verdict.ending).c_str(), base::to_seconds(verdict.took));
   for (const std::string& complaint : verdict.complaints) std::printf("FAILED %s\n", complaint.c_str());
@@ -185,6 +189,8 @@ bool parse(int count, char** words, Options& options) {
       options.jobs = std::max<std::uint64_t>(1, *value);
     } else if (word == "--seconds") {
       options.seconds = *value;
+    } else if (word == "--resumes") {
+      options.resumes = *value;
     } else if (word == "--replay") {
       options.replay = *value;
     } else {
@@ -200,8 +206,8 @@ bool parse(int count, char** words, Options& options) {
 int main(int count, char** words) {
   kerf::simulation::Options options;
   if (!kerf::simulation::parse(count, words, options)) {
-    std::fputs("campaign [--runs N] [--seed N] [--jobs N] [--seconds N] [--replay SEED]\n", stderr);
+    std::fputs("campaign [--runs N] [--seed N] [--jobs N] [--seconds N] [--resumes N] [--replay SEED]\n", stderr);
     return 2;
   }
-  return options.replay != 0 ? kerf::simulation::replay(options.replay) : kerf::simulation::run(options);
+  return options.replay != 0 ? kerf::simulation::replay(options) : kerf::simulation::run(options);
 }

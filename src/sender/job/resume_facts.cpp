@@ -65,7 +65,8 @@ ExecutingLines executing_by_planner(const Program& file, const ProgramStart& sta
     text.clear();
     append_wire_form(text, line->text, form);
     state.execute(line->number, text);
-    if (state.was_waiting()) {
+    // The line that was answered last may owe its answer to the reset or alarm that cut its wait short.
+    if (state.was_waiting() && line->number < acknowledged) {
       waiting.clear();
       done = state.moved_mm() > 0 ? line->number - 1 : line->number;
     }

@@ -50,7 +50,10 @@ class Planning {
     plan_.warnings = facts_.remarks;
     for (const Stage stage : kStages) {
       if (auto refusal = (this->*stage)()) return std::unexpected{*std::move(refusal)};
-      if (plan_.is_from_the_beginning) break;
+      if (!plan_.is_from_the_beginning) continue;
+      // A new beginning, too, cuts where the machine believes to be.
+      if (auto refusal = check_position()) return std::unexpected{*std::move(refusal)};
+      break;
     }
     return std::move(plan_);
   }
