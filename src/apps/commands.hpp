@@ -3,6 +3,7 @@
 // people (or JSON where asked), says errors in one sentence on standard error, and returns how the program ends.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,14 +16,38 @@ namespace kerf::apps {
 
 inline constexpr const char* kDefaultMachine = "virtual:grblhal";
 
+/// How a job goes on in the middle of its program.
+struct ResumeChoices {
+  std::optional<std::uint32_t> from_line{};
+  std::optional<double> safe_height_mm{};
+  std::optional<double> plunge_mm_per_min{};
+  std::optional<double> spin_up_s{};
+  std::string offsets = "agree";  ///< agree, present, job
+  bool position_is_right = false;
+  bool dry_run = false;
+  bool yes = false;
+};
+
+/// How lines are fed, and what a refused one means.
+struct JobChoices {
+  session::JobOptions options{};
+  /// Empty: hold and ask if there is somebody to be asked, else stop.
+  std::optional<job::ErrorPolicy> on_error{};
+
+  [[nodiscard]] session::JobOptions settled(bool can_ask) const {
+    session::JobOptions job = options;
+    job.on_error = on_error.value_or(can_ask ? job::ErrorPolicy::HoldAndAsk : job::ErrorPolicy::Stop);
+    return job;
+  }
+};
+
 struct RunOptions {
   std::string file;
   std::string machine = kDefaultMachine;
   bool json = false;
+  ResumeChoices start{};
   io::RecordingOptions recording{};
-  /// Of `job`, where it was not chosen: hold and ask if there is somebody to be asked, else stop.
-  bool on_error_chosen = false;
-  session::JobOptions job{};
+  JobChoices job{};
 };
 [[nodiscard]] ExitStatus run(const RunOptions& options);
 
@@ -30,9 +55,17 @@ struct RunOptions {
 struct ResumeOptions {
   bool list = false;  ///< only say which jobs could be resumed
   bool json = false;
-  io::JournalOptions journal{};
+  std::optional<std::int64_t> job{};  ///< empty: the newest that was interrupted
+  std::string file;                   ///< empty: where it was
+  std::string machine;                ///< empty: the machine of the job
+  ResumeChoices choices{};
+  JobChoices how{};
+  io::RecordingOptions recording{};
 };
 [[nodiscard]] ExitStatus resume(const ResumeOptions& options);
+[[nodiscard]] ExitStatus resume_job(const ResumeOptions& options);
+/// `kerf run --from-line`.
+[[nodiscard]] ExitStatus run_from_line(const RunOptions& options);
 
 struct VirtualOptions {
   std::string personality = "grblhal";

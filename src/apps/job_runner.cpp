@@ -86,6 +86,12 @@ JobRunner::JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<co
       can_ask_(can_ask),
       redraw_(loop) {}
 
+JobRunner::JobRunner(io::EventLoop& loop, io::MachineUrl url, std::unique_ptr<JobPreparation> preparation,
+                     const session::JobOptions& options, JobView& view, bool can_ask)
+    : JobRunner(loop, std::move(url), nullptr, options, view, can_ask, {}) {
+  preparation_ = std::move(preparation);
+}
+
 ExitStatus JobRunner::run(const io::RecordingOptions& recording) {
   constexpr std::array<int, 4> kSignals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};
   signals_ = std::make_unique<io::SignalWatch>(loop_, kSignals, [this](int signal) { on_signal(signal); });
@@ -103,12 +109,58 @@ ExitStatus JobRunner::run(const io::RecordingOptions& recording) {
 void JobRunner::on_event(const session::Event& event) {
   if (status_) return;
   std::visit([this](const auto& alternative) { on(alternative); }, event);
+  if (is_preparing_ && !status_) go_on_preparing();
+}
+
+void JobRunner::go_on_preparing() {
+  std::visit([this](const auto& next) { follow(next); }, preparation_->next(host_->session()));
+}
+
+void JobRunner::follow(const KeepWaiting&) {}
+
+void JobRunner::follow(const session::Command& command) {
+  host_->submit(command);
+}
+
+void JobRunner::follow(const AskOperator& question) {
+  for (const std::string& line : question.told) fmt::print("{}\n", line);
+  if (!can_ask_) return fail("There is no terminal to ask on: say --yes.", ExitStatus::Usage);
+  awaits_answer_ = true;
+  view_.asked(question.question);
+}
+
+void JobRunner::follow(const BeginJob& begin) {
+  for (const std::string& line : begin.told) fmt::print("{}\n", line);
+  is_preparing_ = false;
+  program_ = begin.job.program;
+  if (program_ == nullptr) return fail("The rest of the program cannot be sent.", ExitStatus::Usage);
+  session::StartJob job = begin.job;
+  job.options = options_;
+  host_->submit(job);
+}
+
+void JobRunner::follow(const NoJob& none) {
+  is_preparing_ = false;
+  for (const std::string& line : none.told) fmt::print("{}\n", line);
+  if (none.status == ExitStatus::Done) return finish(none.status);
+  fail(none.sentence, none.status);
+}
+
+void JobRunner::answer(char key) {
+  awaits_answer_ = false;
+  if (key != 'y' && key != 'Y') return fail("Not confirmed: nothing was sent.", ExitStatus::Interrupted);
+  preparation_->agree();
+  go_on_preparing();
 }
 
 void JobRunner::on(const session::ControllerFound& found) {
   if (is_started_) return;
   const auto& capabilities = host_->session().capabilities();
   view_.found(found.sentence, capabilities);
+  if (preparation_ != nullptr) {
+    is_preparing_ = true;
+    return;
+  }
   host_->submit(session::StartJob{.program = program_,
                                   .timeline = rehearse(*program_, capabilities, clock_speed(url_)),
                                   .origin = origin_,
@@ -217,6 +269,7 @@ void JobRunner::on_signal(int signal) {
 }
 
 void JobRunner::on_key(char key) {
+  if (awaits_answer_) return answer(key);
   if (!is_started_) return;
   if ((key == ' ' || key == '!') && wish_ == Wish::Cut && !is_asking_) return interrupt();
   if (!is_asking_) return;

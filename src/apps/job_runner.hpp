@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "apps/exit_status.hpp"
+#include "apps/job_preparation.hpp"
 #include "apps/job_view.hpp"
 #include "apps/terminal.hpp"
 #include "io/event_loop.hpp"
@@ -18,6 +19,9 @@ class JobRunner {
   /// `can_ask`: there is a terminal whose keys answer questions. `origin` is for the journal.
   JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<const job::Program> program,
             const session::JobOptions& options, JobView& view, bool can_ask, job::JobOrigin origin);
+  /// The job is what `preparation` makes of the machine that is found.
+  JobRunner(io::EventLoop& loop, io::MachineUrl url, std::unique_ptr<JobPreparation> preparation,
+            const session::JobOptions& options, JobView& view, bool can_ask);
 
   /// Runs the event loop until the job has ended.
   [[nodiscard]] ExitStatus run(const io::RecordingOptions& recording);
@@ -27,6 +31,13 @@ class JobRunner {
   enum class Wish { Cut, Hold, Stop, Abort };
 
   void on_event(const session::Event& event);
+  void go_on_preparing();
+  void follow(const KeepWaiting& nothing);
+  void follow(const session::Command& command);
+  void follow(const AskOperator& question);
+  void follow(const BeginJob& begin);
+  void follow(const NoJob& none);
+  void answer(char key);
   void on_lost(const io::TransportError& error);
   void on_signal(int signal);
   void on_key(char key);
@@ -64,6 +75,9 @@ class JobRunner {
   std::shared_ptr<const job::Program> program_;
   const session::JobOptions options_;
   const job::JobOrigin origin_;
+  std::unique_ptr<JobPreparation> preparation_;
+  bool is_preparing_ = false;
+  bool awaits_answer_ = false;
   JobView& view_;
   const bool can_ask_;
   std::optional<ExitStatus> status_;

@@ -5,7 +5,6 @@
 #include <csignal>
 #include <exception>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -25,16 +24,6 @@ using kerf::apps::ExitStatus;
 
 constexpr const char* kVersion = KERF_VERSION;
 
-constexpr const char* kMachineHelp =
-    "Where the machine is:\n"
-    "  /dev/ttyUSB0       a serial port (in full: serial:///dev/ttyUSB0?baud=115200)\n"
-    "  serial://usb/A906  the port with this USB serial number, wherever it is\n"
-    "  HOST:PORT          a machine in the network (tcp://HOST:PORT)\n"
-    "  ws://HOST:PORT     the same through a WebSocket\n"
-    "  /tmp/kerf-grbl     a pseudo-terminal (pty:///tmp/kerf-grbl)\n"
-    "  virtual:grblhal    a machine inside Kerf: grbl, rabbit, grblhal or\n                     grblhal-expr; add "
-    "?speed=20 or ?speed=max";
-
 constexpr const char* kFooter =
     "\nFirst steps, without a machine:\n"
     "  kerf run examples/coaster.nc --machine \"virtual:grblhal?speed=20\"\n"
@@ -45,87 +34,9 @@ constexpr const char* kFooter =
     "\n'kerf COMMAND --help' says more about a command.\n"
     "Exit status: 0 done, 1 wrong option or file, 2 no connection, 3 a line was refused, 4 alarm, 5 interrupted.\n";
 
+using kerf::apps::add_machine;
+using kerf::apps::add_recording;
 using kerf::apps::Chosen;
-
-/// Whether and where a connection is written down.
-void add_recording(CLI::App& command, kerf::io::RecordingOptions& recording) {
-  CLI::Option* folder =
-      command.add_option("--record", recording.folder, "Keep the log of the connection in this folder")
-          ->type_name("FOLDER");
-  command.add_flag("!--no-record", recording.records, "Keep no log of the connection")->excludes(folder);
-}
-
-/// The options of every command that connects to a machine.
-void add_machine(CLI::App& command, std::string& machine, kerf::io::RecordingOptions& recording) {
-  command.add_option("-m,--machine", machine, kMachineHelp)->type_name("URL")->capture_default_str();
-  add_recording(command, recording);
-}
-
-/// The options of every command that runs a job.
-void add_journal(CLI::App& command, kerf::io::JournalOptions& journal) {
-  journal.keeps = true;
-  CLI::Option* folder =
-      command.add_option("--journal", journal.folder, "Keep the journal from which jobs are resumed in this folder")
-          ->type_name("FOLDER");
-  command.add_flag("!--no-journal", journal.keeps, "Keep no journal: the job cannot be resumed after a crash")
-      ->excludes(folder);
-}
-
-void add_job_options(CLI::App& command, const std::shared_ptr<kerf::apps::RunOptions>& options) {
-  using kerf::job::ErrorPolicy;
-  using kerf::job::ProgramSwitch;
-  using kerf::streaming::FlowPolicy;
-  static const std::map<std::string, FlowPolicy> kFlows{{"counting", FlowPolicy::CharacterCounting},
-                                                        {"one-at-a-time", FlowPolicy::OneAtATime}};
-  static const std::map<std::string, ErrorPolicy> kPolicies{
-      {"hold", ErrorPolicy::HoldAndAsk}, {"stop", ErrorPolicy::Stop}, {"continue", ErrorPolicy::Continue}};
-  static const std::map<std::string, ProgramSwitch> kSwitches{
-      {"machine", ProgramSwitch::AsMachine}, {"on", ProgramSwitch::On}, {"off", ProgramSwitch::Off}};
-  auto& job = options->job;
-  command.add_option("--policy", job.flow, "How lines are fed: counting (default) or one-at-a-time")
-      ->transform(CLI::CheckedTransformer(kFlows))
-      ->type_name("POLICY");
-  command
-      .add_option_function<ErrorPolicy>(
-          "--on-error",
-          [options](const ErrorPolicy& policy) {
-            options->job.on_error = policy;
-            options->on_error_chosen = true;
-          },
-          "A refused line: hold and ask (default on a terminal), stop (default elsewhere) or continue without it")
-      ->transform(CLI::CheckedTransformer(kPolicies))
-      ->type_name("POLICY");
-  command.add_option("--optional-stop", job.optional_stop, "Stop at M1: on, off, or as the machine does it (machine)")
-      ->transform(CLI::CheckedTransformer(kSwitches))
-      ->type_name("SWITCH");
-  command.add_option("--block-delete", job.block_delete, "Leave out lines that begin with /: on, off, or machine")
-      ->transform(CLI::CheckedTransformer(kSwitches))
-      ->type_name("SWITCH");
-}
-
-void add_run(CLI::App& kerf, Chosen& chosen) {
-  auto options = std::make_shared<kerf::apps::RunOptions>();
-  CLI::App* command = kerf.add_subcommand("run", "Cut a G-code file: connect, stream it, show the progress");
-  command->add_option("FILE", options->file, "The G-code file")->required()->type_name("");
-  add_machine(*command, options->machine, options->recording);
-  add_journal(*command, options->recording.journal);
-  command->add_flag("--json", options->json, "Print events as JSON, one object a line, instead of the progress");
-  add_job_options(*command, options);
-  command->footer(
-      "\nCtrl-C (or Space) holds the machine and asks whether to go on; Ctrl-C again stops the job.\n"
-      "Without a terminal SIGUSR1 continues what is held.\n");
-  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::run(*options); }; });
-}
-
-void add_resume(CLI::App& kerf, Chosen& chosen) {
-  auto options = std::make_shared<kerf::apps::ResumeOptions>();
-  CLI::App* command = kerf.add_subcommand("resume", "Go on with a job that was interrupted");
-  command->add_flag("-l,--list", options->list, "List the jobs that were interrupted, the newest first")->required();
-  command->add_option("--journal", options->journal.folder, "The journal is in this folder")->type_name("FOLDER");
-  command->add_flag("--json", options->json, "Print JSON");
-  command->footer("");
-  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::resume(*options); }; });
-}
 
 void add_describe(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::DescribeOptions>();
@@ -413,8 +324,8 @@ int start(int argc, char** argv) {
   kerf.require_subcommand(1);
   kerf.footer(kFooter);
   Chosen chosen;
-  add_run(kerf, chosen);
-  add_resume(kerf, chosen);
+  kerf::apps::add_run(kerf, chosen);
+  kerf::apps::add_resume(kerf, chosen);
   kerf::apps::add_virtual(kerf, chosen);
   add_describe(kerf, chosen);
   add_status(kerf, chosen);

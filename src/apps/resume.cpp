@@ -126,7 +126,8 @@ std::vector<InterruptedJob> interrupted(const std::vector<io::JournaledJob>& job
 }  // namespace
 
 ExitStatus resume(const ResumeOptions& options) {
-  const std::string path = io::journal_path(options.journal);
+  if (!options.list) return resume_job(options);
+  const std::string path = io::journal_path(options.recording.journal);
   std::vector<InterruptedJob> rows;
   if (!path.empty() && std::filesystem::exists(path)) {
     const auto journal = io::JournalDatabase::open_to_read(path);

@@ -23,6 +23,7 @@ std::unique_ptr<JobView> view_for(const RunOptions& options) {
 }  // namespace
 
 ExitStatus run(const RunOptions& options) {
+  if (options.start.from_line) return run_from_line(options);
   const std::unique_ptr<JobView> view = view_for(options);
   const auto refuse = [&](const std::string& sentence) {
     view->failed(sentence, ExitStatus::Usage);
@@ -36,11 +37,8 @@ ExitStatus run(const RunOptions& options) {
   io::EventLoop loop;
   file->save_memory(loop);
   const bool can_ask = !options.json && is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO);
-  session::JobOptions job = options.job;
-  // Nobody would ever answer.
-  if (!can_ask && !options.on_error_chosen) job.on_error = job::ErrorPolicy::Stop;
   std::error_code ignored;
-  JobRunner runner(loop, *url, file->program(), job, *view, can_ask,
+  JobRunner runner(loop, *url, file->program(), options.job.settled(can_ask), *view, can_ask,
                    {.path = std::filesystem::absolute(options.file, ignored).string()});
   return runner.run(options.recording);
 }

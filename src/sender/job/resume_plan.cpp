@@ -74,7 +74,7 @@ class Planning {
       return no(ResumeProblem::OtherMachine, 0, "The machine is not the one that the job was cut on.",
                 "Connect to the machine of the job.");
     }
-    if (present.state != vocabulary::MachineState::Idle) {
+    if (!facts_.will_be_homed && present.state != vocabulary::MachineState::Idle) {
       return no(ResumeProblem::MachineNotReady, 0, "The machine is not idle.",
                 "Let it come to rest, and clear an alarm by homing.");
     }
