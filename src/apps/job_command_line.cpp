@@ -12,16 +12,6 @@
 namespace kerf::apps {
 namespace {
 
-constexpr const char* kMachineHelp =
-    "Where the machine is:\n"
-    "  /dev/ttyUSB0       a serial port (in full: serial:///dev/ttyUSB0?baud=115200)\n"
-    "  serial://usb/A906  the port with this USB serial number, wherever it is\n"
-    "  HOST:PORT          a machine in the network (tcp://HOST:PORT)\n"
-    "  ws://HOST:PORT     the same through a WebSocket\n"
-    "  /tmp/kerf-grbl     a pseudo-terminal (pty:///tmp/kerf-grbl)\n"
-    "  virtual:grblhal    a machine inside Kerf: grbl, rabbit, grblhal or\n                     grblhal-expr; add "
-    "?speed=20 or ?speed=max";
-
 /// The options of every command that runs a job.
 void add_journal(CLI::App& command, io::JournalOptions& journal) {
   journal.keeps = true;

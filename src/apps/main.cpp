@@ -37,6 +37,7 @@ constexpr const char* kFooter =
 using kerf::apps::add_machine;
 using kerf::apps::add_recording;
 using kerf::apps::Chosen;
+using kerf::apps::kMachineHelp;
 
 void add_describe(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::DescribeOptions>();
