@@ -161,7 +161,8 @@ class Steps {
     lines.emplace_back(work_offset_name(at_.modal.work_offset));
     add_tool_length(lines, then.tool_length, now.tool_length);
     if (differ(then.g92, now.g92)) lines.push_back(is_zero(then.g92) ? "G92.1" : g92_line(then));
-    add(ResumeStepKind::Offsets, "Work offset " + lines_text(lines) + ".",
+    std::string text = "Offsets: " + lines_text(lines) + ".";
+    add(ResumeStepKind::Offsets, std::move(text),
         "The program counts from there at this line; the rest agrees with what the controller has stored.",
         std::move(lines));
   }
@@ -241,8 +242,9 @@ class Steps {
       lines.push_back("G95F" + number_text(at_.modal.inches ? at_.feed_rate / 25.4F : at_.feed_rate));
     }
     if (lines.empty()) return;
-    add(ResumeStepKind::Modes, "Modes of the program: " + lines_text(lines) + ".",
-        "The lines before set them, and the rest relies on them.", std::move(lines));
+    std::string text = "Modes of the program: " + lines_text(lines) + ".";
+    add(ResumeStepKind::Modes, std::move(text), "The lines before set them, and the rest relies on them.",
+        std::move(lines));
   }
 
   void add_overrides(std::vector<std::string>& lines) const {
