@@ -1,7 +1,7 @@
 // Answers that do not come: what is known about it, the question that proves something, and what follows.
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,7 +47,10 @@ void Session::watch_stall(Instant now) {
   // Most reports come while answers do.
   if (stall_.unanswered_s(now) >= 1) describe_lines(facts, ledger().owed());
   auto stall = stall_.on_report(now, facts);
-  if (stall_.take_question()) {
+  constexpr std::size_t kQuestionBytes = 3;
+  // Beyond the window nothing is sent, not even where it would fit.
+  const bool has_room = ledger().bytes_in_flight() + kQuestionBytes <= streamer_.window();
+  if (stall_.take_question() && has_room) {
     const OwedLine line = streamer_.interject(now, outbox_.lines, Purpose::Proof, "$G");
     tell(LineSent{.purpose = line.purpose, .file_line = 0, .text = line.text});
   }
