@@ -51,8 +51,10 @@ void add_job_options(CLI::App& command, JobChoices& choices) {
       ->type_name("SWITCH");
 }
 
-void add_choices(CLI::App& command, ResumeChoices& choices) {
-  constexpr const char* kWay = "The way to the line";
+constexpr const char* kWay = "The way to the line";
+
+/// The way to the line from which a job goes on; `needs` is the option without which there is none, or null.
+void add_choices(CLI::App& command, ResumeChoices& choices, CLI::Option* needs) {
   command.add_option("--safe-height", choices.safe_height_mm, "Go across at this Z, in machine coordinates")
       ->type_name("MM")
       ->group(kWay);
@@ -75,6 +77,9 @@ void add_choices(CLI::App& command, ResumeChoices& choices) {
       ->group(kWay);
   command.add_flag("-n,--dry-run", choices.dry_run, "Only plan, rehearse and show; nothing moves")->group(kWay);
   command.add_flag("-y,--yes", choices.yes, "Ask nothing: home, and go on")->group(kWay);
+  if (needs == nullptr) return;
+  for (CLI::Option* option : command.get_options([](const CLI::Option* one) { return one->get_group() == kWay; }))
+    option->needs(needs);
 }
 
 }  // namespace
@@ -98,12 +103,13 @@ void add_run(CLI::App& kerf, Chosen& chosen) {
   add_machine(*command, options->machine, options->recording);
   add_journal(*command, options->recording.journal);
   command->add_flag("--json", options->json, "Print events as JSON, one object a line, instead of the progress");
-  command
-      ->add_option("--from-line", options->start.from_line,
-                   "Begin at this line, in the state that the lines before it leave, after a safe way there")
-      ->type_name("N");
+  CLI::Option* from_line =
+      command
+          ->add_option("--from-line", options->start.from_line,
+                       "Begin at this line, in the state that the lines before it leave, after a safe way there")
+          ->type_name("N");
   add_job_options(*command, options->job);
-  add_choices(*command, options->start);
+  add_choices(*command, options->start, from_line);
   command->footer(
       "\nCtrl-C (or Space) holds the machine and asks whether to go on; Ctrl-C again stops the job.\n"
       "Without a terminal SIGUSR1 continues what is held.\n");
@@ -120,7 +126,7 @@ void add_resume(CLI::App& kerf, Chosen& chosen) {
   add_journal(*command, options->recording.journal);
   command->add_option("--from-line", options->choices.from_line, "Go on from this line instead")->type_name("N");
   add_job_options(*command, options->how);
-  add_choices(*command, options->choices);
+  add_choices(*command, options->choices, nullptr);
   command->add_flag("--json", options->json, "Print the plan and events as JSON");
   command->footer(
       "\nShows the plan, rehearses it on a virtual machine with these settings and asks before anything moves: "

@@ -126,7 +126,7 @@ void JobRunner::follow(const AskOperator& question) {
   for (const std::string& line : question.told) fmt::print("{}\n", line);
   if (!can_ask_) return fail("There is no terminal to ask on: say --yes.", ExitStatus::Usage);
   awaits_answer_ = true;
-  view_.asked(question.question);
+  view_.asked(job::JobState{}, question.question);
 }
 
 void JobRunner::follow(const BeginJob& begin) {
