@@ -34,21 +34,25 @@ void add_job_options(CLI::App& command, JobChoices& choices) {
   static const std::map<std::string, ProgramSwitch> kSwitches{
       {"machine", ProgramSwitch::AsMachine}, {"on", ProgramSwitch::On}, {"off", ProgramSwitch::Off}};
   auto& job = choices.options;
-  command.add_option("--policy", job.flow, "How lines are fed: counting (default) or one-at-a-time")
-      ->transform(CLI::CheckedTransformer(kFlows))
-      ->type_name("POLICY");
+  command
+      .add_option("--policy", job.flow,
+                  "How lines are fed: as many as the controller has room for (default), or one at a time")
+      ->transform(CLI::CheckedTransformer(kFlows).description(""))
+      ->type_name("counting|one-at-a-time");
   command
       .add_option(
           "--on-error", choices.on_error,
           "A refused line: hold and ask (default on a terminal), stop (default elsewhere) or continue without it")
-      ->transform(CLI::CheckedTransformer(kPolicies))
-      ->type_name("POLICY");
-  command.add_option("--optional-stop", job.optional_stop, "Stop at M1: on, off, or as the machine does it (machine)")
-      ->transform(CLI::CheckedTransformer(kSwitches))
-      ->type_name("SWITCH");
-  command.add_option("--block-delete", job.block_delete, "Leave out lines that begin with /: on, off, or machine")
-      ->transform(CLI::CheckedTransformer(kSwitches))
-      ->type_name("SWITCH");
+      ->transform(CLI::CheckedTransformer(kPolicies).description(""))
+      ->type_name("hold|stop|continue");
+  command.add_option("--optional-stop", job.optional_stop, "Stop at M1; by default as the machine does it")
+      ->transform(CLI::CheckedTransformer(kSwitches).description(""))
+      ->type_name("on|off|machine");
+  command
+      .add_option("--block-delete", job.block_delete,
+                  "Leave out lines that begin with /; by default as the machine does it")
+      ->transform(CLI::CheckedTransformer(kSwitches).description(""))
+      ->type_name("on|off|machine");
 }
 
 constexpr const char* kWay = "The way to the line";

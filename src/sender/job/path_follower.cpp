@@ -110,6 +110,10 @@ std::string describe(const PathDeparture& departure) {
     case DepartureKind::Spindle:
       return "The spindle is set to " + base::to_fixed(departure.reported_value, 0) + " rpm where " + line + " wants " +
              base::to_fixed(departure.expected_value, 0) + " rpm";
+    case DepartureKind::Time:
+      return "The machine is at " + position_text(departure.reported_mm) +
+             " (machine coordinates) sooner than it can get there by the program, which is at " + line +
+             ": a line may have been lost";
     case DepartureKind::Position: break;
   }
   return "The machine is " + base::to_fixed(departure.distance_mm, 3) + " mm off the path at " + line +
@@ -135,7 +139,7 @@ void PathFollower::begin(Instant now, const FollowerRules& rules) {
 }
 
 double PathFollower::limit_s(const PathReport& report) const {
-  if (!report.asked) return kUnlimited;
+  if (!report.asked || rules_.clock == kUnlimited) return kUnlimited;
   return last_s_ + base::to_seconds(report.arrived - made_after_ + kSlack) * rules_.clock;
 }
 
@@ -165,22 +169,31 @@ PathFollower::Fit PathFollower::fit(const PathForecast& forecast, const AxisValu
 }
 
 std::optional<PathDeparture> PathFollower::on_report(PathForecast& forecast, PathReport report) {
-  const double limit = limit_s(report);
-  Fit found = fit(forecast, report.machine_mm, limit);
-  if (!found.first && report.work_mm) found = fit_with_other_offset(forecast, report, limit);
-  if (found.first) {
-    impossible_ = 0;
-    move_to(forecast, found, report);
-    if (forecast.is_open() && reaches_end_) return std::nullopt;
-    return check_speeds(forecast, report);
-  }
-  if (forecast.is_open() && (found.reaches_end || is_lost_)) {
+  Fit found = fit_with_any_offset(forecast, report, limit_s(report));
+  if (!found.first && forecast.is_open() && (found.reaches_end || is_lost_)) {
     is_lost_ = true;
     note_time(report);
     return std::nullopt;
   }
+  bool is_early = false;
+  if (!found.first) {
+    const Fit later = fit_with_any_offset(forecast, report, kUnlimited);
+    is_early = later.first.has_value();
+    if (is_early && ++early_ == 1) return std::nullopt;  // the next report says whether that was a doubtful time
+    // No machine with these settings is that fast: a simulator, whose clock is not ours.
+    if (is_early && is_too_fast(forecast, report)) rules_.clock = kUnlimited;
+    if (rules_.clock == kUnlimited) found = later;
+  }
+  if (found.first) {
+    impossible_ = early_ = 0;
+    move_to(forecast, found, report);
+    if (forecast.is_open() && reaches_end_) return std::nullopt;
+    return check_speeds(forecast, report);
+  }
   if (!is_possible(forecast, report) && ++impossible_ <= kImpossibleAtMost) return std::nullopt;
-  return departure(forecast, report, found);
+  PathDeparture result = departure(forecast, report, found);
+  if (is_early) result.kind = DepartureKind::Time;
+  return result;
 }
 
 void PathFollower::move_to(PathForecast& forecast, const Fit& found, const PathReport& report) {
@@ -206,10 +219,11 @@ void PathFollower::note_time(const PathReport& report) {
   if (report.asked) made_after_ = std::max(made_after_, *report.asked);
 }
 
-PathFollower::Fit PathFollower::fit_with_other_offset(const PathForecast& forecast, PathReport& report,
-                                                      double limit) const {
+PathFollower::Fit PathFollower::fit_with_any_offset(const PathForecast& forecast, PathReport& report,
+                                                    double limit) const {
   const AxisValues told = report.machine_mm;
   Fit nearest = fit(forecast, told, limit);
+  if (nearest.first || !report.work_mm) return nearest;
   for (const auto& offset : forecast.work_offsets()) {
     for (std::size_t axis = 0; axis < report.axes; ++axis) {
       report.machine_mm[axis] = (*report.work_mm)[axis] + offset.mm[axis];
@@ -231,6 +245,18 @@ bool PathFollower::is_possible(const PathForecast& forecast, const PathReport& r
     if (way > rate / kMinute * time_s + kJumpSlackMm) return false;
   }
   return true;
+}
+
+bool PathFollower::is_too_fast(const PathForecast& forecast, const PathReport& report) const {
+  constexpr double kMinute = 60.0;
+  constexpr double kClearly = 1.2;
+  const double time_s = base::to_seconds(report.arrived - made_after_) * rules_.clock;
+  for (std::size_t axis = 0; has_report_ && axis < report.axes; ++axis) {
+    const auto rate = static_cast<double>(forecast.rules().settings.max_rate_mm_per_min[axis]);
+    const double way = std::abs(static_cast<double>(report.machine_mm[axis] - reported_mm_[axis]));
+    if (way > kClearly * rate / kMinute * time_s + rules_.tolerance_mm) return true;
+  }
+  return false;
 }
 
 PathDeparture PathFollower::departure(const PathForecast& forecast, const PathReport& report, const Fit& best) const {

@@ -16,8 +16,13 @@
 namespace kerf::job {
 
 /// What does not agree with the program.
-enum class DepartureKind { Position, Feed, Spindle };
-BOOST_DESCRIBE_ENUM(DepartureKind, Position, Feed, Spindle)
+enum class DepartureKind {
+  Position,  ///< off the path
+  Time,      ///< on it, but sooner than it can get there
+  Feed,
+  Spindle,
+};
+BOOST_DESCRIBE_ENUM(DepartureKind, Position, Time, Feed, Spindle)
 
 /// The machine does something else than the program says.
 struct PathDeparture {
@@ -73,8 +78,8 @@ struct FollowerRules {
 [[nodiscard]] double tolerance_mm(const PathRules& rules, bool reports_inches);
 
 /// Follows the reports along the forecast, forwards only: each one must lie on the path, not before the earliest place
-/// of the last one, and no further than a machine can get in that time. What fits is an interval, because a path may
-/// cross itself.
+/// of the last one, and no further than a machine can get in that time (two reports that are further say so). What fits
+/// is an interval, because a path may cross itself.
 class PathFollower {
  public:
   void begin(Instant now, const FollowerRules& rules);
@@ -103,8 +108,10 @@ class PathFollower {
 
   [[nodiscard]] Fit fit(const PathForecast& forecast, const AxisValues& at_mm, double limit_s) const;
   [[nodiscard]] double limit_s(const PathReport& report) const;
-  [[nodiscard]] Fit fit_with_other_offset(const PathForecast& forecast, PathReport& report, double limit) const;
+  [[nodiscard]] Fit fit_with_any_offset(const PathForecast& forecast, PathReport& report, double limit) const;
   [[nodiscard]] bool is_possible(const PathForecast& forecast, const PathReport& report) const;
+  /// Its axes moved clearly faster than `$110`.. allow, by our clock.
+  [[nodiscard]] bool is_too_fast(const PathForecast& forecast, const PathReport& report) const;
   [[nodiscard]] std::optional<PathDeparture> check_speeds(const PathForecast& forecast, const PathReport& report);
   [[nodiscard]] PathDeparture departure(const PathForecast& forecast, const PathReport& report, const Fit& best) const;
   void move_to(PathForecast& forecast, const Fit& found, const PathReport& report);
@@ -122,6 +129,7 @@ class PathFollower {
   Instant made_after_{};
   AxisValues reported_mm_{};
   int impossible_ = 0;
+  int early_ = 0;
   int strange_speeds_ = 0;
   int feed_override_ = 100;
   int spindle_override_ = 100;

@@ -74,7 +74,18 @@ TEST_F(Follower, DoesNotTakeALaterPlaceForThePresentOne) {
   // There and back: the third row covers the first.
   send({"G1X10F600", "Y1", "X0", "Y0", "X10"});
   EXPECT_FALSE(report(5, 0, 0, 300ms));
-  EXPECT_TRUE(report(5, 1)) << "nobody gets there in a tenth of a second";
+  EXPECT_FALSE(report(5, 1)) << "nobody gets there in a tenth of a second: the next report decides";
+  const auto departure = report(4.9F, 1);
+  ASSERT_TRUE(departure);
+  EXPECT_EQ(departure->kind, DepartureKind::Time);
+}
+
+TEST_F(Follower, LearnsThatASimulatorsClockIsFaster) {
+  send({"G1X10F600", "Y90", "X0", "Y0", "X90"});
+  EXPECT_FALSE(report(5, 0, 0, 300ms));
+  EXPECT_FALSE(report(10, 40));
+  EXPECT_FALSE(report(5, 90));
+  EXPECT_FALSE(report(50, 0));
 }
 
 TEST_F(Follower, NeverGoesBack) {

@@ -41,7 +41,7 @@ TEST(SettingsText, PrintsWithoutPasswords) {
 TEST(SettingsText, Ids) {
   EXPECT_EQ(setting_id_of(" $110 "), "110");
   EXPECT_EQ(setting_id_of("Homing/Enable"), "Homing/Enable");
-  EXPECT_EQ(setting_id_of("N0"), "");
+  EXPECT_EQ(setting_id_of("N0"), "N0");
   EXPECT_EQ(setting_id_of("$"), "");
 }
 

@@ -113,7 +113,7 @@ TEST(Session, AWelcomeInTheMiddleInterruptsAndNothingIsSentAgain) {
   talk.replies.answers_lines = true;
   talk.pass(30s);
   EXPECT_EQ(talk.session.phase(), SessionPhase::Ready);
-  EXPECT_THAT(talk.lines_sent, ElementsAre("", "$I", "$G", "$#", "$$"));
+  EXPECT_THAT(talk.lines_sent, ElementsAre("", "$I", "$G", "$#", "$$", "$N"));
 }
 
 TEST(Session, LosingTheLinkInterrupts) {
