@@ -131,9 +131,10 @@ double tolerance_mm(const PathRules& rules, bool reports_inches) {
   return std::sqrt(square) + kRoundings * (reports_inches ? kLastDigitInchMm : kLastDigitMm) + kFloatMm;
 }
 
-void PathFollower::begin(Instant now, const FollowerRules& rules) {
+void PathFollower::begin(Instant now, const AxisValues& start_mm, const FollowerRules& rules) {
   *this = {};
   rules_ = rules;
+  reported_mm_ = start_mm;
   made_after_ = now;
   override_changed_ = now;
 }
@@ -235,7 +236,7 @@ PathFollower::Fit PathFollower::fit_with_any_offset(const PathForecast& forecast
 }
 
 bool PathFollower::is_possible(const PathForecast& forecast, const PathReport& report) const {
-  if (!has_report_ || !report.asked) return true;
+  if (!report.asked) return true;
   constexpr double kMinute = 60.0;
   const double time_s = base::to_seconds(report.arrived - made_after_ + kSlack) * rules_.clock;
   for (std::size_t axis = 0; axis < report.axes; ++axis) {
@@ -251,7 +252,7 @@ bool PathFollower::is_too_fast(const PathForecast& forecast, const PathReport& r
   constexpr double kMinute = 60.0;
   constexpr double kClearly = 1.2;
   const double time_s = base::to_seconds(report.arrived - made_after_) * rules_.clock;
-  for (std::size_t axis = 0; has_report_ && axis < report.axes; ++axis) {
+  for (std::size_t axis = 0; axis < report.axes; ++axis) {
     const auto rate = static_cast<double>(forecast.rules().settings.max_rate_mm_per_min[axis]);
     const double way = std::abs(static_cast<double>(report.machine_mm[axis] - reported_mm_[axis]));
     if (way > kClearly * rate / kMinute * time_s + rules_.tolerance_mm) return true;

@@ -82,7 +82,8 @@ struct FollowerRules {
 /// is an interval, because a path may cross itself.
 class PathFollower {
  public:
-  void begin(Instant now, const FollowerRules& rules);
+  /// `start_mm`: where the machine stands, machine coordinates.
+  void begin(Instant now, const AxisValues& start_mm, const FollowerRules& rules);
   /// Empty when the report fits, and where the path is not known. Forgets pieces that are behind.
   [[nodiscard]] std::optional<PathDeparture> on_report(PathForecast& forecast, PathReport report);
   /// Motion that the program does not know of (a door, parking): speeds are not compared until it is back.

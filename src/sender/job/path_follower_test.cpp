@@ -24,7 +24,7 @@ class Follower : public testing::Test {
       rules.settings.max_rate_mm_per_min.at(axis) = 3000;
     }
     forecast_.begin(gcode::Interpreter{gcode::rules_for(vocabulary::Firmware::Grbl)}, {}, rules);
-    follower_.begin(now_, {.tolerance_mm = tolerance_mm(rules, false), .least_rpm = 0, .most_rpm = 1000});
+    follower_.begin(now_, {}, {.tolerance_mm = tolerance_mm(rules, false), .least_rpm = 0, .most_rpm = 1000});
   }
   void send(std::initializer_list<std::string_view> lines) {
     for (const std::string_view line : lines) forecast_.on_sent(++line_, line);
@@ -86,6 +86,12 @@ TEST_F(Follower, LearnsThatASimulatorsClockIsFaster) {
   EXPECT_FALSE(report(10, 40));
   EXPECT_FALSE(report(5, 90));
   EXPECT_FALSE(report(50, 0));
+}
+
+TEST_F(Follower, LearnsItFromTheVeryFirstReports) {
+  send({"G1X100F1200", "Y100", "X0"});
+  EXPECT_FALSE(report(100, 40, 0, 30ms));
+  EXPECT_FALSE(report(90, 100, 0, 30ms));
 }
 
 TEST_F(Follower, NeverGoesBack) {

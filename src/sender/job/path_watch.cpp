@@ -43,17 +43,19 @@ void PathWatch::begin(Instant now, const std::optional<gcode::Interpreter>& read
   const PathRules rules = path_rules_of(known);
   forecast_ = {};
   gap_told_ = false;
+  const AxisValues start = snapshot.machine_position_mm ? axis_values(*snapshot.machine_position_mm) : AxisValues{};
   if (reader && snapshot.machine_position_mm) {
-    forecast_.begin(*reader, axis_values(*snapshot.machine_position_mm), rules);
+    forecast_.begin(*reader, start, rules);
   } else {
     forecast_.open(1, "Kerf does not know the modes and offsets that the machine began with");
   }
   constexpr unsigned kMachinePosition = 1;
   tells_work_position_ = (static_cast<unsigned>(number(known, "10", kMachinePosition)) & kMachinePosition) == 0;
-  follower_.begin(now, {.tolerance_mm = tolerance_mm(rules, number(known, "13", 0) != 0),
-                        .clock = clock,
-                        .least_rpm = number(known, "31", 0),
-                        .most_rpm = number(known, "30", 0)});
+  follower_.begin(now, start,
+                  {.tolerance_mm = tolerance_mm(rules, number(known, "13", 0) != 0),
+                   .clock = clock,
+                   .least_rpm = number(known, "31", 0),
+                   .most_rpm = number(known, "30", 0)});
 }
 
 void PathWatch::on_sent(std::uint32_t file_line, std::string_view text) {
