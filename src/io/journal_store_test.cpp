@@ -1,5 +1,6 @@
 #include "io/journal_store.hpp"
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -9,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "io/process_identity.hpp"
 
@@ -230,6 +233,25 @@ TEST(ProcessIdentity, TellsTheLivingFromTheDead) {
   EXPECT_FALSE(is_running(""));
   EXPECT_FALSE(is_running("boot/1"));
   EXPECT_FALSE(is_running("boot/999999999/5"));
+}
+
+TEST(ProcessIdentity, AProcessThatNobodyHasWaitedForIsDead) {
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe(pipe.data()), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const std::string identity = process_identity();
+    static_cast<void>(!::write(pipe[1], identity.data(), identity.size()));
+    ::_exit(0);
+  }
+  std::array<char, 200> buffer{};
+  const ssize_t length = ::read(pipe[0], buffer.data(), buffer.size());
+  ASSERT_GT(length, 0);
+  siginfo_t ended{};
+  ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT), 0);
+  EXPECT_FALSE(is_running(std::string_view{buffer.data(), static_cast<std::size_t>(length)}));
+  ::waitpid(child, nullptr, 0);
+  for (const int end : pipe) ::close(end);
 }
 
 }  // namespace

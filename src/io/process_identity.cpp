@@ -1,9 +1,9 @@
 #include "io/process_identity.hpp"
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
-
-#include <unistd.h>
+#include <system_error>
 
 namespace kerf::io {
 namespace {
@@ -13,12 +13,14 @@ std::string contents_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// "boot/pid/start"; empty when there is no such process.
+/// "boot/pid/start"; empty when there is no such process, or only its exit status is left (a zombie).
 std::string identity_of(const std::string& pid) {
   const std::string stat = contents_of("/proc/" + pid + "/stat");
   // The name in brackets may hold anything; the start is field 22, the 20th behind it (proc(5)).
   std::size_t at = stat.rfind(')');
   if (at == std::string::npos) return {};
+  const bool has_ended = stat.compare(at, 3, ") Z") == 0 || stat.compare(at, 3, ") X") == 0;
+  if (has_ended) return {};
   for (int field = 0; field < 20 && at != std::string::npos; ++field) at = stat.find(' ', at + 1);
   if (at == std::string::npos) return {};
   const std::string start = stat.substr(at + 1, stat.find(' ', at + 1) - at - 1);
@@ -30,7 +32,9 @@ std::string identity_of(const std::string& pid) {
 }  // namespace
 
 std::string process_identity() {
-  return identity_of(std::to_string(::getpid()));
+  // Not getpid(): in a container whose /proc is the host's, that number is another process there.
+  std::error_code fault;
+  return identity_of(std::filesystem::read_symlink("/proc/self", fault).string());
 }
 
 bool is_running(std::string_view identity) {
