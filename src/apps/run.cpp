@@ -35,7 +35,6 @@ ExitStatus run(const RunOptions& options) {
   if (!file) return refuse(io::explain(file.error(), options.file));
 
   io::EventLoop loop;
-  file->save_memory(loop);
   const bool can_ask = !options.json && is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO);
   std::error_code ignored;
   JobRunner runner(loop, *url, file->program(), options.job.settled(can_ask), *view, can_ask,

@@ -84,6 +84,10 @@ struct JournalStore::Shared {
   std::mutex mutex;
   std::condition_variable changed;
   std::vector<DatedRecord> waiting;
+  /// Nothing that was taken from `waiting` is on its way to the disk.
+  bool is_all_written = true;
+  /// The last attempt to write failed.
+  bool is_at_fault = false;
   bool is_ending = false;
   bool has_ended = false;
   /// The store is gone, and maybe its loop too.
@@ -128,7 +132,8 @@ void JournalStore::Shared::write(std::vector<DatedRecord>& batch) {
 void JournalStore::Shared::write_all() {
   std::vector<DatedRecord> batch;
   write(batch);  // so that the first record does not wait for the opening
-  for (std::unique_lock lock(mutex);;) {
+  std::unique_lock lock(mutex);
+  for (is_at_fault = has_fault;;) {
     const auto has_work = [this] { return is_ending || !waiting.empty(); };
     if (has_fault) {
       changed.wait_for(lock, kBetweenAttempts, [this] { return is_ending; });
@@ -138,11 +143,15 @@ void JournalStore::Shared::write_all() {
     const bool is_last = is_ending;
     std::ranges::move(waiting, std::back_inserter(batch));
     waiting.clear();
+    is_all_written = batch.empty();
     lock.unlock();
     thin_out(batch, kMostWaiting);
     write(batch);
     if (is_last) database.reset();
     lock.lock();
+    is_all_written = batch.empty();
+    is_at_fault = has_fault;
+    changed.notify_all();
     if (!is_last) continue;
     has_ended = true;
     changed.notify_all();
@@ -173,6 +182,16 @@ void JournalStore::append(std::vector<job::JournalRecord> records) {
   }
   thin_out(shared_->waiting, kMostWaiting);
   shared_->changed.notify_all();
+}
+
+bool JournalStore::wait_until_written(std::chrono::milliseconds patience) {
+  std::unique_lock lock(shared_->mutex);
+  const auto is_written = [this] { return shared_->waiting.empty() && shared_->is_all_written; };
+  shared_->changed.wait_for(lock, patience, [&] { return is_written() || shared_->is_at_fault; });
+  if (is_written() || shared_->is_at_fault) return is_written();
+  lock.unlock();
+  shared_->say("The disk is slow: the beginning of this job is not written down yet. The job goes on.");
+  return false;
 }
 
 }  // namespace kerf::io

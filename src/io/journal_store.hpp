@@ -2,6 +2,7 @@
 // The journal on disk: docs/journal.md. An SQLite database in WAL mode with full synchronisation, written by a thread
 // of its own: what the session tells is on the disk as soon as the disk allows, and the stream never waits for it.
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -32,6 +33,9 @@ class JournalStore {
 
   /// Never waits. What no disk takes for long is thinned out: of how far a job was only the latest counts.
   void append(std::vector<job::JournalRecord> records);
+  /// Waits until everything that was appended is on the disk, but no longer than `patience`, and not at all for a disk
+  /// that is at fault. False when it is not, which is told.
+  bool wait_until_written(std::chrono::milliseconds patience);
 
  private:
   struct Shared;

@@ -109,6 +109,30 @@ TEST_F(Journal, GivesBackWhatWasWritten) {
   EXPECT_EQ(status.st_mode & 0777U, 0600U);
 }
 
+TEST_F(Journal, TellsWhenItIsOnTheDisk) {
+  EventLoop loop;
+  JournalStore store(loop, path(), "m", [this](const std::string& said) { said_.push_back(said); });
+  store.append({begun()});
+  EXPECT_TRUE(store.wait_until_written(20s));
+  EXPECT_THAT(jobs(), SizeIs(1));
+  store.append({advanced(8), noted("x")});
+  EXPECT_TRUE(store.wait_until_written(20s));
+  EXPECT_EQ(jobs().at(0).history.latest()->line_acknowledged, 8U);
+}
+
+TEST_F(Journal, NobodyWaitsForADiskThatIsAtFault) {
+  EventLoop loop;
+  std::ofstream(folder_) << "a file where the folder should be";
+  JournalStore store(loop, path(), "m", [this](const std::string& said) { said_.push_back(said); });
+  store.append({begun()});
+  const auto before = std::chrono::steady_clock::now();
+  EXPECT_FALSE(store.wait_until_written(60s));
+  EXPECT_LT(std::chrono::steady_clock::now() - before, 30s);
+  loop.post([&loop] { loop.stop(); });
+  loop.run();
+  EXPECT_THAT(said_, SizeIs(1));
+}
+
 TEST_F(Journal, KeepsTheLatestOfManyAdvances) {
   std::vector<job::JournalRecord> records{begun(), noted("x")};
   for (std::uint32_t line = 1; line <= 1500; ++line) records.push_back(advanced(line));

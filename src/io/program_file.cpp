@@ -2,9 +2,13 @@
 
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <filesystem>
+#include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -24,7 +28,7 @@ using namespace std::chrono_literals;
 
 /// So much of a mapped file is in memory at once while it is read.
 constexpr std::size_t kPieceBytes = std::size_t{4} << 20U;
-constexpr Duration kGiveBackEvery = 100ms;
+constexpr auto kGiveBackEvery = 100ms;
 
 class Descriptor {
  public:
@@ -57,6 +61,17 @@ int open_nameless() {
   return named;
 }
 
+/// The system's fault, 0 if none.
+int write_all(int to, std::string_view rest) {
+  while (!rest.empty()) {
+    const ssize_t put = ::write(to, rest.data(), rest.size());
+    if (put < 0 && errno == EINTR) continue;
+    if (put <= 0) return put < 0 ? errno : ENOSPC;
+    rest.remove_prefix(static_cast<std::size_t>(put));
+  }
+  return 0;
+}
+
 /// With a buffer of our own, for what the kernel cannot copy by itself (a pipe). The system's fault, 0 if none.
 int copy_by_hand(int from, int to) {
   std::vector<char> piece(std::size_t{1} << 16U);
@@ -65,12 +80,7 @@ int copy_by_hand(int from, int to) {
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return errno;
     if (got == 0) return 0;
-    for (std::string_view rest(piece.data(), static_cast<std::size_t>(got)); !rest.empty();) {
-      const ssize_t put = ::write(to, rest.data(), rest.size());
-      if (put < 0 && errno == EINTR) continue;
-      if (put <= 0) return put < 0 ? errno : ENOSPC;
-      rest.remove_prefix(static_cast<std::size_t>(put));
-    }
+    if (const int fault = write_all(to, {piece.data(), static_cast<std::size_t>(got)}); fault != 0) return fault;
   }
 }
 
@@ -101,9 +111,17 @@ class ProgramFile::Mapping {
  public:
   Mapping(int descriptor, std::size_t bytes)
       : start_(::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, descriptor, 0)), bytes_(bytes) {
-    if (is_good()) ::madvise(start_, bytes_, MADV_SEQUENTIAL);
+    if (!is_good()) return;
+    ::madvise(start_, bytes_, MADV_SEQUENTIAL);
+    saver_ = std::jthread([this](const std::stop_token& stop) {
+      std::mutex mutex;
+      std::condition_variable_any stopped;
+      std::unique_lock lock(mutex);
+      while (!stopped.wait_for(lock, stop, kGiveBackEvery, [&stop] { return stop.stop_requested(); })) give_back();
+    });
   }
   ~Mapping() {
+    saver_ = {};
     if (is_good()) ::munmap(start_, bytes_);
   }
   Mapping(const Mapping&) = delete;
@@ -116,29 +134,12 @@ class ProgramFile::Mapping {
  private:
   void* start_;
   std::size_t bytes_;
+  std::jthread saver_;
 };
 
 std::string explain(const ProgramFileError& error, std::string_view path) {
   if (const auto* fault = std::get_if<job::ProgramFault>(&error)) return job::describe(*fault, path);
   return explain(std::get<FileError>(error), path);
-}
-
-struct ProgramFile::Saver {
-  Saver(EventLoop& owner, std::shared_ptr<const Mapping> what) : loop(owner), timer(owner), mapping(std::move(what)) {}
-  void wait() {
-    timer.arm(loop.now() + kGiveBackEvery, [this] {
-      mapping->give_back();
-      wait();
-    });
-  }
-
-  EventLoop& loop;
-  Timer timer;
-  std::shared_ptr<const Mapping> mapping;
-};
-
-void ProgramFile::SaverEnd::operator()(Saver* saver) const {
-  delete saver;
 }
 
 std::expected<ProgramFile, ProgramFileError> ProgramFile::load(const std::string& path) {
@@ -161,10 +162,35 @@ std::expected<ProgramFile, ProgramFileError> ProgramFile::load(const std::string
   return mapped(path, copy.get());
 }
 
+std::expected<ProgramFile, ProgramFileError> ProgramFile::assemble(const std::string& name,
+                                                                   const std::function<void(const Put&)>& write) {
+  std::string text;
+  std::optional<Descriptor> copy;
+  int fault = 0;
+  write([&](std::string_view piece) {
+    if (fault != 0) return;
+    if (copy) {
+      fault = write_all(copy->get(), piece);
+      return;
+    }
+    text += piece;
+    if (text.size() <= kMostHeldBytes) return;
+    copy.emplace(open_nameless());
+    fault = copy->is_open() ? write_all(copy->get(), text) : errno;
+    text = {};
+  });
+  if (fault != 0) return failed(file_error(fault));
+  return copy ? mapped(name, copy->get()) : held(name, std::move(text));
+}
+
 std::expected<ProgramFile, ProgramFileError> ProgramFile::held(const std::string& path) {
   auto text = read_text_file(path);
   if (!text) return failed(std::move(text.error()));
-  auto program = job::Program::load(path, *std::move(text));
+  return held(path, *std::move(text));
+}
+
+std::expected<ProgramFile, ProgramFileError> ProgramFile::held(const std::string& path, std::string text) {
+  auto program = job::Program::load(path, std::move(text));
   if (!program) return std::unexpected<ProgramFileError>(std::move(program.error()));
   ProgramFile file;
   file.program_ = *std::move(program);
@@ -179,19 +205,11 @@ std::expected<ProgramFile, ProgramFileError> ProgramFile::mapped(const std::stri
   if (!mapping->is_good()) return failed(file_error(errno));
   job::ProgramReader reader(path, mapping, mapping->text());
   while (reader.read_on(kPieceBytes)) mapping->give_back();
-  mapping->give_back();
   auto program = reader.finish();
   if (!program) return std::unexpected<ProgramFileError>(std::move(program.error()));
   ProgramFile file;
-  file.mapping_ = mapping;
   file.program_ = *std::move(program);
   return file;
-}
-
-void ProgramFile::save_memory(EventLoop& loop) {
-  if (!mapping_) return;
-  saver_.reset(new Saver(loop, mapping_));
-  saver_->wait();
 }
 
 }  // namespace kerf::io

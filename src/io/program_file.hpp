@@ -7,11 +7,12 @@
 // takes the copy away with the process.
 
 #include <expected>
+#include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <variant>
 
-#include "io/event_loop.hpp"
 #include "io/text_file.hpp"
 #include "sender/job/program.hpp"
 
@@ -25,31 +26,28 @@ using ProgramFileError = std::variant<FileError, job::ProgramFault>;
 /// One sentence for people: what, where, what to do.
 [[nodiscard]] std::string explain(const ProgramFileError& error, std::string_view path);
 
-/// A program and the memory that it lies in. Loop's thread only.
+/// A program and the memory that it lies in. While a mapped one lives, a thread gives the pages that were read back to
+/// the system ten times a second: they come again when they are needed. Any thread, one at a time.
 class ProgramFile {
  public:
   /// Reads, checks and indexes the whole file; a gigabyte takes seconds.
   [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> load(const std::string& path);
 
-  [[nodiscard]] const std::shared_ptr<const job::Program>& program() const { return program_; }
+  /// The same for a text that `write` gives away piece by piece.
+  using Put = std::function<void(std::string_view)>;
+  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> assemble(
+      const std::string& name, const std::function<void(const Put&)>& write);
 
-  /// While `loop` runs, gives the pages that were read back to the system ten times a second: they come again when they
-  /// are needed. Does nothing for a file that is held in memory.
-  void save_memory(EventLoop& loop);
+  [[nodiscard]] const std::shared_ptr<const job::Program>& program() const { return program_; }
 
  private:
   class Mapping;
-  struct Saver;
-  struct SaverEnd {
-    void operator()(Saver* saver) const;
-  };
   ProgramFile() = default;
   [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> held(const std::string& path);
+  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> held(const std::string& path, std::string text);
   [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> mapped(const std::string& path, int copy);
 
-  std::shared_ptr<const Mapping> mapping_;
   std::shared_ptr<const job::Program> program_;
-  std::unique_ptr<Saver, SaverEnd> saver_;
 };
 
 }  // namespace kerf::io

@@ -62,6 +62,20 @@ TEST_F(ProgramFileTest, WhoeverCutsTheFileShortDoesNotTouchTheJob) {
   }
 }
 
+TEST_F(ProgramFileTest, PutsATextTogether) {
+  for (const std::size_t lines : {std::size_t{10}, kManyLines}) {
+    const auto file = ProgramFile::assemble("rest of part.nc", [lines](const ProgramFile::Put& put) {
+      put("G21\n");
+      for (std::size_t line = 2; line <= lines; ++line) put("G1X" + std::to_string(line) + "F100\n");
+    });
+    ASSERT_TRUE(file);
+    EXPECT_EQ(file->program()->name(), "rest of part.nc");
+    EXPECT_EQ(file->program()->line(1)->text, "G21");
+    EXPECT_EQ(file->program()->line_count(), lines);
+    EXPECT_EQ(file->program()->line(static_cast<std::uint32_t>(lines))->text, "G1X" + std::to_string(lines) + "F100");
+  }
+}
+
 TEST_F(ProgramFileTest, TakesAPipe) {
   ASSERT_EQ(mkfifo(path().c_str(), 0600), 0);
   std::thread writer([this] { write(1000); });

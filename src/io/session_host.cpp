@@ -1,5 +1,7 @@
 #include "io/session_host.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 #include <variant>
 
@@ -7,6 +9,11 @@
 
 namespace kerf::io {
 namespace {
+
+using namespace std::chrono_literals;
+
+/// A commit takes some milliseconds; on an SD card, seconds.
+constexpr auto kPatienceAtBeginning = 2000ms;
 
 session::SessionOptions with_traits_of(const MachineUrl& url, session::SessionOptions options) {
   if (const auto* serial = std::get_if<SerialAddress>(&url)) options.link.baud = serial->baud;
@@ -93,13 +100,22 @@ void SessionHost::write_down() {
   if (fault && callbacks_.noted) callbacks_.noted(*fault);
 }
 
+void SessionHost::write_journal(std::vector<job::JournalRecord> records) {
+  if (!journal_) return;
+  const bool begins_job = std::ranges::any_of(
+      records, [](const auto& record) { return std::holds_alternative<job::JobBegun>(record.what); });
+  journal_->append(std::move(records));
+  // Nothing moves yet. Behind this, a kill always leaves a job that can be found.
+  if (begins_job) journal_->wait_until_written(kPatienceAtBeginning);
+}
+
 void SessionHost::settle() {
   if (is_settling_) return;  // an observer submitted a command: the loop below goes on with it
   is_settling_ = true;
   for (session::Outbox outbox = session_.take_outbox(); !outbox.empty(); outbox = session_.take_outbox()) {
     if (!outbox.realtime.empty()) link_.transport().write_realtime(outbox.realtime);
+    write_journal(std::move(outbox.journal));
     if (!outbox.lines.empty()) link_.transport().write_lines(outbox.lines);
-    if (journal_) journal_->append(std::move(outbox.journal));
     write_down();  // behind the bytes: they have no time to lose
     for (const session::Event& event : outbox.events) {
       if (const auto command = keeper_.on_event(event, session_)) session_.submit(loop_.now(), *command);

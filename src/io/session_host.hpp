@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "io/event_loop.hpp"
 #include "io/journal_store.hpp"
@@ -51,6 +52,8 @@ class SessionHost {
   /// Empties the outbox, and arms the timer.
   void settle();
   void write_down();
+  /// Does not return before the beginning of a job is on the disk; within limits.
+  void write_journal(std::vector<job::JournalRecord> records);
   void open_journal(const MachineUrl& url, const JournalOptions& options);
 
   EventLoop& loop_;

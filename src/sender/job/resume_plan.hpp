@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <boost/describe.hpp>
@@ -190,6 +191,17 @@ struct ResumedProgram {
   std::shared_ptr<const Program> program;
   JobOrigin origin;
 };
+
+/// The text of that program without a copy of the file: blank lines, which keep the numbers of those behind them, then
+/// the plan's lines, then the rest of the file.
+struct ResumedText {
+  std::size_t blank_lines = 0;
+  std::string head{};
+  /// As long as the file's text lives.
+  std::string_view rest{};
+};
+[[nodiscard]] ResumedText resumed_text(const Program& file, const ResumePlan& plan);
+[[nodiscard]] JobOrigin origin_of(const ResumePlan& plan);
 
 /// The plan's lines, then the rest of `file`. Lines keep their numbers where there is room before them for the plan's;
 /// the origin tells in any case.

@@ -22,24 +22,32 @@ std::vector<std::string> ResumePlan::preamble() const {
   return lines;
 }
 
-ResumedProgram resumed_program(const Program& file, const ResumePlan& plan) {
+ResumedText resumed_text(const Program& file, const ResumePlan& plan) {
+  ResumedText text;
   const std::vector<std::string> before = plan.preamble();
-  const auto wanted = static_cast<std::uint32_t>(before.size());
-  const std::uint32_t skipped = plan.from_line - 1;
-  // Blank lines are never sent; they keep the numbers of the lines behind them.
-  std::string text(skipped > wanted ? skipped - wanted : 0, '\n');
-  for (const std::string& line : before) (text += line) += '\n';
-  for (auto line = file.line(plan.from_line); line; line = file.line_at(file.offset_after(*line), line->number + 1)) {
-    const bool is_rewritten = plan.rewritten && plan.rewritten->line == line->number;
-    if (!is_rewritten && (!plan.rewritten || plan.rewritten->line < line->number)) {
-      text += file.text().substr(line->offset_bytes);
-      break;
-    }
-    (text += is_rewritten ? std::string_view{plan.rewritten->text} : line->text) += '\n';
+  const std::size_t skipped = plan.from_line - 1;
+  text.blank_lines = skipped - std::min(skipped, before.size());
+  for (const std::string& line : before) (text.head += line) += '\n';
+  auto line = file.line(plan.from_line);
+  while (line && plan.rewritten && line->number <= plan.rewritten->line) {
+    const bool is_rewritten = line->number == plan.rewritten->line;
+    (text.head += is_rewritten ? std::string_view{plan.rewritten->text} : line->text) += '\n';
+    line = file.line_at(file.offset_after(*line), line->number + 1);
   }
-  ResumedProgram resumed;
-  if (auto program = Program::load(file.name(), std::move(text))) resumed.program = *std::move(program);
-  resumed.origin = {.first_line = plan.from_line, .preamble_lines = std::max(skipped, wanted)};
+  if (line) text.rest = file.text().substr(line->offset_bytes);
+  return text;
+}
+
+JobOrigin origin_of(const ResumePlan& plan) {
+  const auto wanted = static_cast<std::uint32_t>(plan.preamble().size());
+  return {.first_line = plan.from_line, .preamble_lines = std::max(plan.from_line - 1, wanted)};
+}
+
+ResumedProgram resumed_program(const Program& file, const ResumePlan& plan) {
+  const ResumedText text = resumed_text(file, plan);
+  ResumedProgram resumed{.program = nullptr, .origin = origin_of(plan)};
+  auto program = Program::load(file.name(), std::string(text.blank_lines, '\n') + text.head + std::string{text.rest});
+  if (program) resumed.program = *std::move(program);
   return resumed;
 }
 
