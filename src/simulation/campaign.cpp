@@ -303,12 +303,24 @@ class CampaignRun {
     const bool waits = phase() == JobPhase::Held;
     const bool something_is_wrong = std::ranges::any_of(due_, [](const Due& due) { return due.is_over; });
     if (waits && !something_is_wrong) {
-      note("the operator resumes");
-      world_.submit(session::ResumeJob{});
+      decide();
     } else if (!waits && world_.now() - moved_on_at_ > kStuck && phase() != JobPhase::Stopping) {
       note("the operator stops a job that does not go on");
       world_.submit(session::StopJob{});
     }
+  }
+
+  /// Goes on where Kerf says that it is safe, as it says; else he stops.
+  void decide() {
+    const auto& job = *world_.session().job();
+    const bool is_stalled = job.hold_cause == job::HoldCause::Stall;
+    if (is_stalled && !(job.stall && job.stall->goes_on_at)) {
+      note("the operator stops a job that cannot go on");
+      world_.submit(session::StopJob{});
+      return;
+    }
+    note("the operator resumes");
+    world_.submit(session::ResumeJob{});
   }
 
   void follow_progress() {

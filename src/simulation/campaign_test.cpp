@@ -45,6 +45,19 @@ TEST(WireWatch, BytesBeyondTheWindowAreTold) {
   EXPECT_THAT(watch.complaints(), SizeIs(1));
 }
 
+TEST(WireWatch, WhatAnAnsweredQuestionProvesToBeReadIsNotInFlight) {
+  WireWatch watch{Duration::zero()};
+  watch.on_command(session::SendLine{});
+  watch.on_outbox(Instant{}, lines("G1X10\n$G\n"), 10);
+  watch.on_received(Instant{}, "[GC:G1 G54]\r\nok\r\n");
+  watch.on_outbox(Instant{}, lines("G1X201\n"), 10);
+  EXPECT_THAT(watch.complaints(), IsEmpty());
+  // Nobody asked.
+  watch.on_received(Instant{}, "[GC:G1 G54]\r\n");
+  watch.on_outbox(Instant{}, lines("G1X20\n"), 10);
+  EXPECT_THAT(watch.complaints(), SizeIs(1));
+}
+
 TEST(WireWatch, MotionWithoutACommandIsTold) {
   WireWatch watch{Duration::zero()};
   watch.on_outbox(Instant{}, lines("$$\n\n$G\n"), 100);

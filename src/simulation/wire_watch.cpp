@@ -84,7 +84,7 @@ void WireWatch::on_lines(Instant now, std::string_view lines, std::size_t window
 
 void WireWatch::on_line(Instant now, std::string_view line, std::size_t window_bytes) {
   ++lines_sent_;
-  in_flight_.push_back(line.size());
+  in_flight_.push_back({.bytes = line.size(), .asks_parser_state = base::trim(line) == "$G"});
   bytes_in_flight_ += line.size();
   most_in_flight_ = std::max(most_in_flight_, bytes_in_flight_);
   if (bytes_in_flight_ > window_bytes && in_flight_.size() > 1) {
@@ -125,6 +125,10 @@ void WireWatch::on_received_line(Instant now, std::string_view line) {
     if (motion_sent_at_ && now - *motion_sent_at_ > round_trip_) motion_sent_at_.reset();
     return;
   }
+  if (line.starts_with("[GC:")) {
+    strike_out_what_was_read();
+    return;
+  }
   if (line != "ok" && !line.starts_with("error:")) return;
   ++answers_received_;
   if (reset_pending_) return;
@@ -132,8 +136,19 @@ void WireWatch::on_received_line(Instant now, std::string_view line) {
     ++stray_answers_;
     return;
   }
-  bytes_in_flight_ -= in_flight_.front();
+  forget_oldest();
+}
+
+void WireWatch::forget_oldest() {
+  bytes_in_flight_ -= in_flight_.front().bytes;
   in_flight_.pop_front();
+}
+
+// Lines are read in order, so what was sent before the question lies in no buffer any more, whatever became of it or of
+// its answer.
+void WireWatch::strike_out_what_was_read() {
+  if (std::ranges::none_of(in_flight_, &LineInFlight::asks_parser_state)) return;
+  while (!in_flight_.front().asks_parser_state) forget_oldest();
 }
 
 void WireWatch::complain(Instant now, std::string_view what) {

@@ -16,7 +16,8 @@
 namespace kerf::simulation {
 
 /// Counts lines that leave and answers that come in at the sender's end of the wire, and complains when more bytes are
-/// unanswered than the window allows (a line that travels alone may be longer), when more answers are given to lines
+/// unanswered than the window allows (a line that travels alone may be longer; what stands before a `$G` that was
+/// answered with `[GC:` has been read, although its own answer got lost), when more answers are given to lines
 /// than came in, when one line is answered twice or out of order, and when something that may start motion leaves
 /// although no command was given since the link was opened or the controller started.
 class WireWatch {
@@ -49,10 +50,17 @@ class WireWatch {
   void on_received_line(Instant now, std::string_view line);
   void may_move(Instant now, std::string_view what);
   void forget();
+  void forget_oldest();
+  void strike_out_what_was_read();
   void complain(Instant now, std::string_view what);
 
-  /// Bytes of each unanswered line.
-  std::deque<std::size_t> in_flight_;
+  struct LineInFlight {
+    std::size_t bytes = 0;
+    bool asks_parser_state = false;
+  };
+
+  /// Oldest first.
+  std::deque<LineInFlight> in_flight_;
   std::size_t bytes_in_flight_ = 0;
   std::size_t most_in_flight_ = 0;
   std::string half_line_;

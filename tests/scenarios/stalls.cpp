@@ -65,6 +65,28 @@ TEST_P(Stalls, ALostAnswerIsProvenAndTheJobGoesOnWithoutSendingAnythingTwice) {
   EXPECT_NEAR(position_mm(*world, 1), 20, 0.005);
 }
 
+TEST_P(Stalls, BehindALostAnswerTheJobIsNotOverBeforeItsLastLineIsSent) {
+  std::unique_ptr<World> world;
+  for (int attempt = 0; attempt < 400 && (!world || !lost_bytes(*world).contains(": ok\\r\\n")); ++attempt) {
+    world = std::make_unique<World>(quick_serial(GetParam()));
+    ASSERT_TRUE(connect(*world));
+    world->submit(
+        session::StartJob{.program = program(zigzag(40)), .options = {.flow = streaming::FlowPolicy::OneAtATime}});
+    world->run_for(5ms + attempt * 700us);
+    ASSERT_TRUE(world->order("drop from next 4"));
+    world->run_for(4s);
+  }
+  ASSERT_TRUE(world->run_until(is_held, 1min)) << lost_bytes(*world);
+  ASSERT_EQ(world->session().job()->hold_cause, HoldCause::Stall);
+  ASSERT_EQ(lines_sent(*world, streaming::Purpose::JobSync), 0U);
+  world->submit(session::ResumeJob{});
+  EXPECT_EQ(lines_sent(*world, streaming::Purpose::JobSync), 0U);
+  ASSERT_TRUE(world->run_until(is_over, 10min));
+  EXPECT_EQ(world->session().job()->phase, JobPhase::Finished) << world->session().job()->reason;
+  EXPECT_NEAR(position_mm(*world, 1), 40, 0.005);
+  EXPECT_EQ(lines_sent(*world, streaming::Purpose::JobSync), 1U);
+}
+
 TEST_P(Stalls, ALostLineEndIsFoundOutWithoutMotion) {
   World world{quick_serial(GetParam())};
   ASSERT_TRUE(connect(world));

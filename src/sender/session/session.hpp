@@ -153,6 +153,7 @@ class Session {
   void hold_for_stall(Instant now, std::vector<streaming::OwedLine> lines, job::StallProof proof);
   [[nodiscard]] job::StallFacts stall_facts() const;
   void obey_handshake(Instant now, const machine::HandshakeOrder& order);
+  void obey_job(Instant now);
   void obey_job(Instant now, job::JobOrder order);
   void follow_stop(Instant now);
   void cancel_jog();
