@@ -46,7 +46,8 @@ SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::Sessio
                  },
              .received =
                  [this](std::string_view bytes) {
-                   session_.on_bytes(loop_.now(), bytes);
+                   const std::string lines = session_.feed_ahead(loop_.now(), bytes);
+                   if (!lines.empty()) link_.transport().write_lines(lines);
                    settle();
                  },
              .lost = [this](const TransportError& error) { on_lost(error); }}) {

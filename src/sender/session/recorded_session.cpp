@@ -37,18 +37,33 @@ Command masked(Command command, PasswordMask& mask) {
 }  // namespace
 
 void RecordedSession::on_open(Instant now, const machine::LinkOpening& opening) {
+  catch_up();
   note(now, LinkOpened{opening});
   Session::on_open(now, opening);
   settle(now);
 }
 
 void RecordedSession::on_bytes(Instant now, std::string_view bytes) {
-  note(now, BytesReceived{received_mask_.push(bytes, mask_)});
-  Session::on_bytes(now, bytes);
-  settle(now);
+  waiting_.lines += feed_ahead(now, bytes);
+  catch_up();
+}
+
+std::string RecordedSession::feed_ahead(Instant now, std::string_view bytes) {
+  catch_up();
+  heard_ = Heard{.at = now, .bytes = std::string{bytes}, .lines = Session::feed_ahead(now, bytes)};
+  return heard_->lines;
+}
+
+void RecordedSession::catch_up() {
+  if (!heard_) return;
+  Heard heard = std::move(*heard_);
+  heard_.reset();
+  note(heard.at, BytesReceived{received_mask_.push(heard.bytes, mask_)});
+  settle(heard.at, std::move(heard.lines));
 }
 
 void RecordedSession::on_closed(Instant now, LinkLoss loss) {
+  catch_up();
   if (auto held = received_mask_.finish(); !held.empty()) note(now, BytesReceived{std::move(held)});
   note(now, LinkGone{loss});
   journal_.on_link_closed(now, loss);
@@ -59,6 +74,7 @@ void RecordedSession::on_closed(Instant now, LinkLoss loss) {
 }
 
 void RecordedSession::submit(Instant now, const Command& command) {
+  catch_up();
   if (const auto* recalled = std::get_if<RecallWords>(&command)) {
     for (const auto& answer : recalled->words.answers) {
       for (const std::string& line : answer.lines) mask_.recall_from(line);
@@ -78,6 +94,7 @@ void RecordedSession::submit(Instant now, const Command& command) {
 }
 
 void RecordedSession::advance_to(Instant now) {
+  catch_up();
   note(now, TimePassed{});
   Session::advance_to(now);
   settle(now);
@@ -92,10 +109,11 @@ void RecordedSession::note_program(Instant now, const StartJob& start) {
   note(now, std::move(loaded));
 }
 
-void RecordedSession::settle(Instant now) {
+void RecordedSession::settle(Instant now, std::string ahead) {
   Outbox out = Session::take_outbox();
-  if (!out.realtime.empty() || !out.lines.empty()) {
-    note(now, BytesSent{.realtime = out.realtime, .lines = mask_.masked_text(out.lines)});
+  ahead += out.lines;
+  if (!out.realtime.empty() || !ahead.empty()) {
+    note(now, BytesSent{.realtime = out.realtime, .lines = mask_.masked_text(ahead)});
   }
   for (Event& event : out.events) hide_passwords(event, mask_.secrets());
   journal_.on_events(now, out.events, *this, mask_.secrets());
@@ -115,10 +133,12 @@ Instant RecordedSession::next_deadline() const {
 }
 
 Outbox RecordedSession::take_outbox() {
+  catch_up();
   return std::exchange(waiting_, {});
 }
 
 std::vector<Record> RecordedSession::take_records() {
+  catch_up();
   return std::exchange(records_, {});
 }
 

@@ -3,6 +3,7 @@
 // the journal.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,7 @@ class RecordedSession : public Session {
 
   void on_open(Instant now, const machine::LinkOpening& opening = {});
   void on_bytes(Instant now, std::string_view bytes);
+  [[nodiscard]] std::string feed_ahead(Instant now, std::string_view bytes);
   void on_closed(Instant now, LinkLoss loss);
   void submit(Instant now, const Command& command);
   void advance_to(Instant now);
@@ -37,10 +39,19 @@ class RecordedSession : public Session {
   void note(Instant now, What what) {
     records_.push_back({.at = now, .what = std::move(what)});
   }
+  void catch_up();
   void note_program(Instant now, const StartJob& start);
-  /// Takes what the input led to, and writes the bytes down behind it.
-  void settle(Instant now);
+  /// Takes what the input led to, and writes the bytes down behind it; `ahead` went before the others.
+  void settle(Instant now, std::string ahead = {});
 
+  /// Bytes that are not written down yet, and the lines that they made room for.
+  struct Heard {
+    Instant at{};
+    std::string bytes;
+    std::string lines;
+  };
+
+  std::optional<Heard> heard_;
   Outbox waiting_;
   PasswordMask mask_;
   StreamMask received_mask_;

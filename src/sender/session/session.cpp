@@ -30,11 +30,6 @@ streaming::SoloPolicy solo_policy_of(vocabulary::Firmware firmware) {
   }
 }
 
-/// May move the machine, or change how it reads later lines.
-bool acts(Purpose purpose) {
-  return purpose != Purpose::Question && purpose != Purpose::Setting;
-}
-
 }  // namespace
 
 Session::Session(SessionOptions options)
@@ -44,6 +39,7 @@ Session::Session(SessionOptions options)
 }
 
 void Session::on_open(Instant now, const machine::LinkOpening& opening) {
+  catch_up();
   open_ = true;
   reader_.reset();
   model_.forget();
@@ -64,6 +60,7 @@ void Session::on_open(Instant now, const machine::LinkOpening& opening) {
 }
 
 void Session::on_closed(Instant now, LinkLoss) {
+  catch_up();
   if (!open_) return;
   open_ = false;
   strike_out();
@@ -82,104 +79,6 @@ void Session::on_closed(Instant now, LinkLoss) {
   settle_everything(now);
   outbox_.realtime.clear();
   outbox_.lines.clear();
-}
-
-void Session::on_bytes(Instant now, std::string_view bytes) {
-  if (!open_) return;
-  handshake_.on_bytes(bytes);
-  for (const auto& received : reader_.read(bytes)) {
-    handle(now, received);
-    follow_parts(now);
-  }
-  // Not before all of it is read: an `ok` makes room for a line that a welcome behind it forbids.
-  pump(now);
-}
-
-void Session::handle(Instant now, const protocol::ReceivedMessage& received) {
-  const MachineState before = snapshot().state;
-  std::optional<machine::Snapshot> before_alarm;
-  if (std::holds_alternative<protocol::AlarmRaised>(received.message)) before_alarm = snapshot();
-  const bool for_kerf = is_for_kerf(received.message);
-  model_.fold(now, received.message);
-  if (std::holds_alternative<protocol::ParserState>(received.message)) on_parser_state(now);
-  std::optional<streaming::OwedLine> answers;
-  if (protocol::is_answer(received.message) && !reset_pending_until_) answers = streamer_.settle();
-  tell(LineReceived{.message = received.message, .raw = received.raw, .answers = answers, .for_kerf = for_kerf});
-  std::visit(base::Overloaded{
-                 [&](const protocol::Ok&) { on_answer(now, answers, 0); },
-                 [&](const protocol::ErrorAnswer& error) { on_answer(now, answers, error.code); },
-                 [&](const protocol::StatusReport&) { on_report(now, before); },
-                 [&](const protocol::Welcome&) { on_welcome(now); },
-                 [&](const protocol::AlarmRaised& alarm) { on_alarm(now, alarm.code, *before_alarm); },
-                 [&](const protocol::SettingValue& setting) {
-                   const auto id = handshake_.collector().id_of(setting.id);
-                   if (changes_settings() && id == setting.id) settings_change_->on_value(id, setting.value);
-                 },
-                 [&](const protocol::StartupLine& line) {
-                   if (changes_settings()) settings_change_->on_value("N" + std::to_string(line.index), line.block);
-                 },
-                 [](const auto&) {},
-             },
-             received.message);
-  handshake_.on_message(now, received.message, received.raw, snapshot());
-}
-
-void Session::on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code) {
-  if (!line) return;
-  gate_.on_activity(now);
-  if (error_code != 0 && line->purpose != Purpose::Proof && stall_.proof() == job::StallProof::Asked) {
-    on_line_end_lost(now, *line);
-    return;
-  }
-  stall_.on_progress(now);
-  on_jog_answered(*line);
-  if (error_code == 0) {
-    model_.on_line_accepted(line->text);
-    incidents_.on_accepted(*line);
-  }
-  if (line->purpose != Purpose::Question) refresh_.on_change(now);
-  if (has_job() && acts(line->purpose)) path_.on_answer(line->file_line, error_code);
-  std::string meaning;
-  if (error_code != 0) {
-    const auto& known = handshake_.collector();
-    meaning = sentence_of(known.lexicon().error(known.dialect(), error_code));
-  }
-  bool latched_repeat = false;
-  switch (line->purpose) {
-    case Purpose::JobLine:
-      if (!has_job()) break;
-      latched_repeat = job_->on_answer(now, {.file_line = line->file_line,
-                                             .file_offset_after = line->file_offset_after,
-                                             .text = line->text,
-                                             .error_code = error_code,
-                                             .meaning = meaning});
-      tell_program_messages(line->file_line);
-      break;
-    case Purpose::JobSync:
-      if (has_job()) job_->on_sync_answered(now);
-      break;
-    case Purpose::Question: handshake_.on_answer(now, error_code); break;
-    case Purpose::Setting:
-      if (changes_settings()) settings_change_->on_answer(now, error_code, meaning);
-      break;
-    case Purpose::Operator:
-      if (error_code == 0) on_operator_line_accepted(now, line->text);
-      break;
-    case Purpose::ClearLatch:
-    case Purpose::Proof: break;
-  }
-  if (error_code == 0) return;
-  tell(LineRefused{
-      .purpose = line->purpose,
-      .refusal = {.file_line = line->file_line, .text = line->text, .code = error_code, .meaning = std::move(meaning)},
-      .latched_repeat = latched_repeat,
-      .explanation = explain(incidents_.refused(error_code, *line, snapshot()))});
-  // Otherwise the next line would be refused on behalf of this one (protocol.md 6.4).
-  const bool is_own_question = line->purpose == Purpose::Question && is_ready();
-  const bool by_hand = line->purpose == Purpose::Operator || line->purpose == Purpose::Setting;
-  if ((by_hand || is_own_question) && dialect().error_latch) {
-    streamer_.enqueue(Purpose::ClearLatch, "");
-  }
 }
 
 void Session::on_report(Instant now, MachineState before) {
@@ -316,14 +215,11 @@ void Session::pump(Instant now) {
   // Before that the handshake looks after it.
   if (is_ready() && gate_.verdict(now) != GateVerdict::Open) return;
   if (ledger().empty()) stall_.on_progress(now);
-  for (auto& line : streamer_.pump(now, outbox_.lines)) {
-    if (line.purpose != Purpose::Question) gate_.on_activity(now);
-    if (has_job() && acts(line.purpose)) path_.on_sent(line.file_line, line.text);
-    tell(LineSent{.purpose = line.purpose, .file_line = line.file_line, .text = std::move(line.text)});
-  }
+  on_sent(now, streamer_.pump(now, outbox_.lines));
 }
 
 void Session::advance_to(Instant now) {
+  catch_up();
   if (!open_) return;
   handshake_.advance_to(now, snapshot());
   if (has_job()) job_->advance_to(now);
@@ -350,6 +246,7 @@ Instant Session::next_deadline() const {
 }
 
 Outbox Session::take_outbox() {
+  catch_up();
   return std::exchange(outbox_, {});
 }
 

@@ -84,6 +84,9 @@ class Session {
 
   void on_open(Instant now, const machine::LinkOpening& opening = {});
   void on_bytes(Instant now, std::string_view bytes);
+  /// As on_bytes(), in two steps: first the lines for which answers of a running job make room, to be written at once;
+  /// what the answers mean is worked out by the next call of anything that is not const, take_outbox() as a rule.
+  [[nodiscard]] std::string feed_ahead(Instant now, std::string_view bytes);
   void on_closed(Instant now, LinkLoss loss);
   void submit(Instant now, const Command& command);
   void advance_to(Instant now);
@@ -108,7 +111,19 @@ class Session {
   [[nodiscard]] std::size_t window_bytes() const { return streamer_.window(); }
 
  private:
+  /// Answers whose room was used before they were worked out.
+  struct Ahead {
+    Instant at{};
+    std::vector<protocol::ReceivedMessage> messages;
+    /// One for each message.
+    std::vector<streaming::OwedLine> answered{};
+    std::vector<streaming::OwedLine> sent{};
+  };
+
+  [[nodiscard]] bool may_feed_ahead(Instant now, const std::vector<protocol::ReceivedMessage>& messages) const;
+  void catch_up();
   void handle(Instant now, const protocol::ReceivedMessage& received);
+  void take_in(Instant now, const protocol::ReceivedMessage& received, std::optional<streaming::OwedLine> answers);
   void on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code);
   void on_report(Instant now, vocabulary::MachineState before);
   void on_welcome(Instant now);
@@ -164,6 +179,7 @@ class Session {
   void tell_program_messages(std::uint32_t acknowledged_line);
   [[nodiscard]] std::vector<std::string> settings_queries() const;
   void pump(Instant now);
+  void on_sent(Instant now, const std::vector<streaming::OwedLine>& lines);
   void poll(Instant now);
   void ask_for_reports(Instant now);
   void refresh(Instant now);
@@ -186,6 +202,7 @@ class Session {
 
   SessionOptions options_;
   Outbox outbox_;
+  std::optional<Ahead> ahead_;
   bool open_ = false;
   protocol::MessageReader reader_;
   machine::MachineModel model_;

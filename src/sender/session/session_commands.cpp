@@ -27,6 +27,7 @@ constexpr Duration kLongestWaitForStart = std::chrono::seconds{5};
 }  // namespace
 
 void Session::submit(Instant now, const Command& command) {
+  catch_up();
   if (!open_) {
     refuse(Refused::NotConnected);
     return;
