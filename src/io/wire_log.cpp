@@ -30,7 +30,7 @@ using namespace std::chrono_literals;
 constexpr Duration kLongestUnwritten = 1s;
 constexpr std::size_t kMostUnwrittenBytes = std::size_t{64} << 10U;
 /// Small blocks of one text that repeats itself: a larger window or more effort gains little and costs memory.
-constexpr int kLevel = 3;
+constexpr int kLevel = 1;
 constexpr int kWindowLog = 18;
 constexpr mode_t kOnlyMine = 0600;
 
