@@ -122,7 +122,7 @@ class ResumePreparation final : public JobPreparation {
 
   [[nodiscard]] BeginJob begin(std::vector<std::string> told, const job::ResumePlan& made) const {
     job::ResumedProgram resumed{.program = wish_.file, .origin = {}};
-    if (!made.is_from_the_beginning) {
+    if (!made.steps.empty()) {
       resumed = job::resumed_program(*wish_.file, made);
       resumed.origin.file_hash = wish_.file->hash();
     }

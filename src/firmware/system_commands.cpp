@@ -292,6 +292,9 @@ SystemCommands::Result SystemCommands::home(const ParsedCommand& command, Steps&
   board_.state = MachineState::Home;
   board_.alarm = 0;
   if (board_.personality.homing.announces) {
+    // grblHAL switches off and its parser knows: M3 in the next line starts the spindle again (motion_control.c).
+    if (board_.accessories.spindle != gcode::SpindleDirection::Off) board_.interpreter.stop_spindle();
+    board_.interpreter.set_coolant({});
     board_.set_accessories({});
     if (asked == 0) board_.homed = static_cast<AxisMask>(board_.homed & ~board_.homing_axes());
     if (!board_.reports(vocabulary::ReportBit::ReportWhenHoming)) {

@@ -350,7 +350,20 @@ class CampaignRun {
     for (const auto& record : world_.log()) {
       verdict_.transcript += base::to_fixed(base::to_seconds(record.at), 3) + " " + record.what + "\n";
     }
+    if (made_up_.world.keeps_transcript) tell_notes();
     return std::move(verdict_);
+  }
+
+  /// What the journal says of every job, for the transcript.
+  void tell_notes() {
+    int number = 0;
+    for (const job::JobHistory& job : world_.journal().jobs()) {
+      const std::string start = "job " + std::to_string(++number) + " ";
+      for (const job::TimedNote& timed : job.notes) {
+        verdict_.transcript += start + std::string{boost::describe::enum_to_string(timed.note.kind, "?")} +
+                               " at line " + std::to_string(timed.note.line) + ": " + timed.note.text + "\n";
+      }
+    }
   }
 
   void judge_ledger() {

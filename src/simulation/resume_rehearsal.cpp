@@ -189,7 +189,7 @@ std::expected<ResumeRehearsal, job::ResumeRefusal> rehearse_resume(const job::Pr
                                                                    const job::ResumePlan& plan,
                                                                    const machine::Snapshot& now,
                                                                    const machine::Capabilities& capabilities) {
-  if (plan.is_from_the_beginning) {
+  if (plan.steps.empty()) {
     return ResumeRehearsal{.sentence = "There is nothing to rehearse: the program runs from its beginning."};
   }
   Script script;

@@ -83,6 +83,11 @@ float ArcChords::travel(const std::array<float, 2>& end) const {
   return angle;
 }
 
+float ArcChords::swept_rad() const {
+  const std::array<float, 2> end = {arc_.target_mm[arc_.plane_axes[0]], arc_.target_mm[arc_.plane_axes[1]]};
+  return wide_ ? travel<double>(end) : travel<float>(end);
+}
+
 template <class Wide>
 std::uint32_t ArcChords::chord_count(float travel_rad) const {
   const float doubled = 2.0F * arc_.radius_mm - tolerance_mm_;

@@ -38,6 +38,8 @@ class ArcChords {
   /// What the firmware multiplies an inverse-time feed (1/min) by before it treats the result as mm/min. 1, with the
   /// feed staying inverse-time, when is_one_line().
   [[nodiscard]] int inverse_time_factor() const { return is_one_line() ? 1 : first_chords_; }
+  /// The angle to the target, without the full turns before. Within 5e-7 of nothing it is a full circle.
+  [[nodiscard]] float swept_rad() const;
   /// The arc is too small to be cut.
   [[nodiscard]] bool is_one_line() const { return first_chords_ == 0; }
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "common/base/text.hpp"
+#include "common/motion/arc.hpp"
 #include "sender/job/wire_form.hpp"
 #include "sender/machine/explanation_evidence.hpp"
 
@@ -72,13 +73,37 @@ bool same_motion(const gcode::Action& one, const gcode::Action& other) {
     if (!near(arc->radius_mm, then.radius_mm, kSamePlaceMm)) return false;
   }
   return near(*a.target_mm, *b.target_mm, kSamePlaceMm) && a.feed->rapid == b.feed->rapid &&
-         near(a.feed->rate_mm_per_min, b.feed->rate_mm_per_min, 0.01F) &&
+         (a.feed->rapid || near(a.feed->rate_mm_per_min, b.feed->rate_mm_per_min, 0.01F)) &&
          a.feed->inverse_time == b.feed->inverse_time && near(a.feed->spindle_rpm, b.feed->spindle_rpm, 0.5F) &&
          a.feed->spindle == b.feed->spindle;
 }
 
-bool same_motions(const std::vector<gcode::Action>& one, const std::vector<gcode::Action>& other) {
-  return std::ranges::equal(one, other, same_motion);
+/// What a line asks for, and the place where it begins.
+struct Motions {
+  const std::vector<gcode::Action>& actions;
+  AxisValues from_mm{};
+};
+
+/// The last bit of a coordinate decides whether an arc back to its beginning is a full circle or nothing.
+bool same_sweeps(const Motions& one, const Motions& other, const motion::MotionRules& rules) {
+  const auto sweep_of = [&](const Motions& motions, std::size_t index) {
+    const auto* const arc = std::get_if<gcode::ArcMove>(&motions.actions[index]);
+    if (arc == nullptr) return 0.0F;
+    AxisValues start = motions.from_mm;
+    for (std::size_t before = 0; before < index; ++before) {
+      const auto seen = std::visit(MotionOf{}, motions.actions[before]);
+      if (seen.target_mm != nullptr) start = *seen.target_mm;
+    }
+    return motion::ArcChords{motion::arc_of(*arc, start), rules, {}}.swept_rad();
+  };
+  for (std::size_t index = 0; index < one.actions.size(); ++index) {
+    if (!near(sweep_of(one, index), sweep_of(other, index), 0.1F)) return false;
+  }
+  return true;
+}
+
+bool same_motions(const Motions& one, const Motions& other, const motion::MotionRules& rules) {
+  return std::ranges::equal(one.actions, other.actions, same_motion) && same_sweeps(one, other, rules);
 }
 
 class Check {
@@ -184,6 +209,7 @@ class Check {
   /// there.
   std::optional<ResumeRefusal> compare_rest() {
     ProgramState then = with_.state;
+    const motion::MotionRules& rules = motion::rules_of(with_.capabilities.family);
     const WireForm form = wire_form_of(with_.dialect);
     std::string text;
     std::uint32_t compared = 0;
@@ -191,10 +217,12 @@ class Check {
          line = with_.program.line_at(with_.program.offset_after(*line), line->number + 1), ++compared) {
       text.clear();
       append_wire_form(text, line->text, form);
+      const AxisValues from_then = then.parser().position_mm;
+      const AxisValues from_now = resumed_.parser().position_mm;
       then.execute(line->number, text);
       const bool is_rewritten = plan_.rewritten && plan_.rewritten->line == line->number;
       resumed_.execute(line->number, is_rewritten ? std::string_view{plan_.rewritten->text} : std::string_view{text});
-      if (!same_motions(then.actions(), resumed_.actions())) {
+      if (!same_motions({then.actions(), from_then}, {resumed_.actions(), from_now}, rules)) {
         return fault(ResumeProblem::CannotRestore, line->number,
                      "Line " + std::to_string(line->number) + " would not do what it does in the whole program.");
       }

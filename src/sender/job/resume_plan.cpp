@@ -23,7 +23,7 @@ constexpr float kPlungeMmPerMin = 100.0F;
 /// A line after which the state is certain again is looked for so far ahead.
 constexpr std::uint32_t kLookAhead = 20'000;
 /// Where a job is read twice because the line before the resumed one is needed, this often at most.
-constexpr int kMostStepsBack = 4;
+constexpr int kMostStepsBack = 8;
 
 template <typename Value>
 using Planned = std::expected<Value, ResumeRefusal>;
@@ -48,9 +48,14 @@ class Planning {
     plan_.executing = facts_.executing;
     plan_.is_homed = is_homed();
     plan_.warnings = facts_.remarks;
-    for (const Stage stage : kStages) {
-      if (auto refusal = (this->*stage)()) return std::unexpected{*std::move(refusal)};
-      if (!plan_.is_from_the_beginning) continue;
+    for (std::size_t next = 0; next < std::size(kStages); ++next) {
+      const Stage stage = kStages[next];
+      if (auto refusal = (this->*stage)()) {
+        if (!steps_back_from(*refusal)) return std::unexpected{*std::move(refusal)};
+        next = static_cast<std::size_t>(std::ranges::find(kStages, &Planning::read_to_line) - kStages) - 1;
+        continue;
+      }
+      if (!state_ || !plan_.is_from_the_beginning || !is_as_it_began()) continue;
       // A new beginning, too, cuts where the machine believes to be.
       if (auto refusal = check_position()) return std::unexpected{*std::move(refusal)};
       break;
@@ -62,6 +67,23 @@ class Planning {
   static std::optional<ResumeRefusal> no(ResumeProblem problem, std::uint32_t line, std::string sentence,
                                          std::string next) {
     return ResumeRefusal{.problem = problem, .line = line, .sentence = std::move(sentence), .next = std::move(next)};
+  }
+
+  /// What a line continues that cannot be brought back exactly (a full circle, a mode) may be begun again before it.
+  bool steps_back_from(const ResumeRefusal& refusal) {
+    const bool may = refusal.problem == ResumeProblem::CannotRestore && !choice_.from_line && line_ > 1 && state_ &&
+                     steps_back_ < kMostStepsBack;
+    if (!may) return false;
+    if (steps_back_++ == 0) {
+      plan_.from_because += " Line " + std::to_string(line_) + " cannot be the first, so it goes further back.";
+    }
+    --line_;
+    plan_.steps.clear();
+    plan_.path.clear();
+    plan_.resume_position_mm.clear();
+    plan_.rewritten.reset();
+    plan_.warnings = facts_.remarks;
+    return true;
   }
 
   std::optional<ResumeRefusal> check_machine() {
@@ -184,10 +206,44 @@ class Planning {
 
   std::optional<ResumeRefusal> begin_anew() {
     plan_.is_from_the_beginning = true;
-    plan_.from_line = 1;
     plan_.from_because = "nothing was cut before line " + std::to_string(line_) + ".";
+    line_ = line_behind_tape_mark();
+    state_.emplace(*interpreter_at(start_), *start_.dialect);
+    plan_.from_line = line_;
     return std::nullopt;
   }
+
+  /// A `%` at the beginning would be the end behind the lines of the plan.
+  [[nodiscard]] std::uint32_t line_behind_tape_mark() const {
+    for (auto line = program_.line(1); line; line = program_.line_at(program_.offset_after(*line), line->number + 1)) {
+      const auto text = base::trim(line->text);
+      if (text.starts_with('%')) return line->number + 1;
+      if (!text.empty()) break;
+    }
+    return 1;
+  }
+
+  /// The machine stands as it stood before the first line, so there is nothing to do first.
+  [[nodiscard]] bool is_as_it_began() const {
+    const gcode::ParserState& then = state_->parser();
+    const gcode::ParserState& now = present_->state();
+    return then.modal == now.modal && then.feed_rate == now.feed_rate && then.spindle_rpm == now.spindle_rpm &&
+           then.tool == now.tool && stands_where_it_stood() &&
+           !first_difference(state_->offsets(), present_->offsets(), *start_.dialect, axes()) &&
+           state_->offsets().g92 == present_->offsets().g92 &&
+           state_->offsets().tool_length == present_->offsets().tool_length;
+  }
+
+  [[nodiscard]] bool stands_where_it_stood() const {
+    constexpr float kSameMm = 0.01F;
+    for (std::size_t axis = 0; axis < axes(); ++axis) {
+      const float away = state_->parser().position_mm.at(axis) - present_->state().position_mm.at(axis);
+      if (std::abs(away) > kSameMm) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(start_.settings.axes); }
 
   /// The first line from `line_` on that has axis words but no mode of motion of its own.
   [[nodiscard]] std::optional<ProgramLine> line_without_motion_word() const {
@@ -245,8 +301,7 @@ class Planning {
 
   std::optional<ResumeRefusal> check_offsets() {
     if (choice_.offsets == OffsetsChoice::AsThen) return std::nullopt;
-    const auto difference = first_difference(state_->offsets(), present_->offsets(), *start_.dialect,
-                                             static_cast<std::size_t>(start_.settings.axes));
+    const auto difference = first_difference(state_->offsets(), present_->offsets(), *start_.dialect, axes());
     if (!difference) return std::nullopt;
     return no(ResumeProblem::OffsetsDiffer, state_->tool_history().offset_line,
               difference->name + " was " + difference->then + " in the job, and is " + difference->now + " now.",
@@ -330,10 +385,10 @@ class Planning {
     const bool turns = at.modal.spindle != gcode::SpindleDirection::Off && !start_.settings.laser_mode;
     const float spin_up = turns ? std::max(history.spin_up_s, kSpinUpS) : 0.0F;
     plan_.spin_up_s = turns ? choice_.spin_up_s.value_or(static_cast<double>(spin_up)) : 0;
-    if (!turns && !start_.settings.laser_mode) {
+    if (!turns && !start_.settings.laser_mode && !plan_.is_from_the_beginning) {
       plan_.warnings.emplace_back("The spindle is off at this line, as the program left it.");
     }
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(start_.settings.axes); ++axis) {
+    for (std::size_t axis = 0; axis < axes(); ++axis) {
       plan_.resume_position_mm.push_back(static_cast<double>(at.position_mm.at(axis)));
     }
     return std::nullopt;
@@ -411,6 +466,7 @@ class Planning {
   const ResumeChoice& choice_;
   ResumePlan plan_;
   std::uint32_t line_ = 1;
+  int steps_back_ = 0;
   ProgramStart start_;
   ProgramStart present_start_;
   std::optional<gcode::Interpreter> present_;

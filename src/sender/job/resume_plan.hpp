@@ -158,7 +158,7 @@ struct ResumePlan {
   /// The first line of the file that is sent again.
   std::uint32_t from_line = 1;
   std::string from_because{};
-  /// Nothing was cut before: the program simply runs from its beginning.
+  /// Nothing was cut before: the program runs from its beginning. Without steps the machine stands as it stood then.
   bool is_from_the_beginning = false;
   /// Machine coordinates are those of the homing switches, so the travel is known.
   bool is_homed = false;

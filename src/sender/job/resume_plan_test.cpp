@@ -57,8 +57,8 @@ TEST(ResumePlan, ComesUpSwitchesOnGoesAcrossAndComesDownFed) {
   for (const Firmware firmware : kFirmwares) {
     const auto made = plan(kPart, testing::facts(firmware, 9));
     EXPECT_EQ(made.from_line, 9U);
-    EXPECT_THAT(made.preamble(), ElementsAre("G21G90G94G17", "G53G0Z-1", "M3S12000", "M8", "G4P4", "G53G0X-140Y-140",
-                                             "G54", "G53G0Z-54", "G53G1Z-62F200", "F800", "G1"));
+    EXPECT_THAT(made.preamble(), ElementsAre("G21G90G94G17", "G53G0Z-1", "M5", "M3S12000", "M8", "G4P4",
+                                             "G53G0X-140Y-140", "G54", "G53G0Z-54", "G53G1Z-62F200", "F800", "G1"));
     EXPECT_EQ(made.highest_cut_mm, -55.0);
     EXPECT_THAT(made.path.front().position_mm, ElementsAre(-1, -1, -1));
   }
@@ -70,9 +70,9 @@ TEST(ResumePlan, AnArcThatContinuesGetsItsWord) {
   EXPECT_EQ(made.rewritten->line, 11U);
   EXPECT_EQ(made.rewritten->text, "G2X80Y80I10J0");
   const auto resumed = resumed_program(*program(kPart), made);
-  EXPECT_EQ(resumed.program->line(11)->text, "G2X80Y80I10J0");
-  EXPECT_EQ(resumed.program->line(12)->text, "G91");
-  EXPECT_EQ(resumed.origin.preamble_lines, 10U);
+  EXPECT_EQ(resumed.program->line(12)->text, "G2X80Y80I10J0");
+  EXPECT_EQ(resumed.program->line(13)->text, "G91");
+  EXPECT_EQ(resumed.origin.preamble_lines, 11U);
   EXPECT_EQ(resumed.origin.first_line, 11U);
 }
 
@@ -87,6 +87,55 @@ TEST(ResumePlan, BeforeTheFirstCutItBeginsAnew) {
   EXPECT_TRUE(made.is_from_the_beginning);
   EXPECT_EQ(made.from_line, 1U);
   EXPECT_THAT(made.steps, IsEmpty());
+}
+
+TEST(ResumePlan, ANewBeginningGetsBackWhatTheFirstLinesRelyOn) {
+  // A cable was pulled, so the controller still has the zero, the modes and the spindle of the program's middle.
+  constexpr std::string_view kTape = "%\nG54\nM3S1000\nG0Z5\nG0X10Y10\nG1Z-1F200\nX20\nM30\n%\n";
+  for (const Firmware firmware : kFirmwares) {
+    auto facts = testing::facts(firmware, 5);
+    facts.present.offsets_mm["G92"] = {5, 0, 0};
+    facts.present.modes.distance = "G91";
+    facts.present.modes.spindle = "M3";
+    facts.present.modes.spindle_rpm = 1000;
+    facts.present.machine_position_mm = std::vector<double>{-150, -140, -30};
+    const auto made = plan(kTape, facts, {.offsets = OffsetsChoice::AsThen});
+    EXPECT_TRUE(made.is_from_the_beginning);
+    // Behind the lines of the plan a second % would be the end.
+    EXPECT_EQ(made.from_line, 2U);
+    const auto lines = made.preamble();
+    EXPECT_THAT(lines, ::testing::Contains("G92.1"));
+    EXPECT_THAT(lines, ::testing::Contains("M5S0"));
+    EXPECT_THAT(lines, ::testing::Contains("G53G0X-1Y-1"));
+    EXPECT_THAT(lines.front(), HasSubstr("G90"));
+    EXPECT_EQ(resumed_program(*program(kTape), made).program->line(static_cast<std::uint32_t>(lines.size()) + 1)->text,
+              "G54");
+  }
+}
+
+TEST(ResumePlan, AFullCircleBeginsInItsEndToTheLastBit) {
+  // Of coordinates such as these the last bit differs with the way they are written.
+  for (int tenth = 0; tenth < 40; ++tenth) {
+    const std::string x = std::to_string(23 + tenth) + ".757";
+    const std::string text =
+        "G21G90\nM3S1000\nG0Z5\nX" + x + "Y17.508\nG1Z-0.5F200\nG2X" + x + "Y17.508I-7.460J0F1300\nG0Z5\nM30\n";
+    for (const Firmware firmware : kFirmwares) {
+      // The plan is checked as the controller reads it, arc for arc.
+      const auto made = plan(text, testing::facts(firmware, 6));
+      EXPECT_EQ(made.from_line, 6U) << x;
+    }
+  }
+}
+
+TEST(ResumePlan, AFullCircleBehindAShiftThatIsNotExactIsBegunBeforeIt) {
+  const std::string_view text =
+      "G21G90\nM3S1000\nG0Z5\nX23.757Y17.508\nG92X3.3Y7.7Z1.1\nX3.3Y7.7\nG1Z-2F200\nG2X3.3Y7.7I-7."
+      "46J0F1300\nG0Z5\nM30\n";
+  for (const Firmware firmware : kFirmwares) {
+    const auto made = plan(text, testing::facts(firmware, 8));
+    EXPECT_GE(made.from_line, 1U);
+    EXPECT_LE(made.from_line, 8U);
+  }
 }
 
 TEST(ResumePlan, ABeamStaysOffOnTheWay) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "common/base/text.hpp"
@@ -30,6 +31,14 @@ bool is_zero(const AxisValues& values) {
   return std::ranges::all_of(values, [](float value) { return std::abs(value) < kNothing; });
 }
 
+std::string trimmed(std::string text) {
+  if (text.contains('.')) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.ends_with('.')) text.pop_back();
+  }
+  return text == "-0" ? "0" : text;
+}
+
 std::string mm(float value) {
   return base::to_fixed(static_cast<double>(value), 3) + " mm";
 }
@@ -47,6 +56,34 @@ std::string_view spindle_word(SpindleDirection direction) {
     case SpindleDirection::Off: break;
   }
   return "M5";
+}
+
+/// A word that brings an axis to `place_mm` in machine coordinates to the last bit, as this controller reads it; empty
+/// if there is none. Where an arc ends in its beginning, that bit decides whether it is a full circle or nothing.
+/// `before` are words that say how it is meant: in machine coordinates (G53), or as the program counts.
+std::string exact_word(std::string_view before, std::size_t axis, float place_mm, float near_mm,
+                       gcode::Interpreter reader) {
+  constexpr int kDigits = 8;
+  constexpr int kMostOff = 40;
+  int whole = 1;
+  for (float size = std::abs(near_mm); size >= 10.0F; size /= 10.0F) ++whole;
+  std::vector<gcode::Action> actions;
+  const auto is_read_back = [&](const std::string& word) {
+    actions.clear();
+    if (!reader.interpret("G21G90G94G0" + std::string{before} + word, actions)) return false;
+    return reader.state().position_mm.at(axis) == place_mm;
+  };
+  for (int decimals = 3; decimals <= std::max(kDigits - whole, 3); ++decimals) {
+    const double unit = std::pow(10.0, -decimals);
+    for (int off = 0; off <= kMostOff; ++off) {
+      for (const int sign : {1, -1}) {
+        const double value = static_cast<double>(near_mm) + sign * off * unit;
+        const std::string word = kAxisLetters.at(axis) + trimmed(base::to_fixed(value, decimals));
+        if (is_read_back(word)) return word;
+      }
+    }
+  }
+  return {};
 }
 
 class Steps {
@@ -86,14 +123,15 @@ class Steps {
 
   void check_tool() {
     const std::uint32_t line = in_.state.tool_history().tool_line;
-    if (at_.tool == 0 && line == 0) return;
+    if (at_.tool == 0 && in_.present.state().tool == 0 && line == 0) return;
     std::vector<std::string> lines;
     const bool has_m61 = in_.dialect.tool_change == vocabulary::ToolChangeRule::AsTold;
     if (at_.tool != in_.present.state().tool) {
       lines.push_back((has_m61 ? "M61Q" : "T") + std::to_string(at_.tool));
     }
     if (has_m61 && at_.tool_pending != at_.tool) lines.push_back("T" + std::to_string(at_.tool_pending));
-    add(ResumeStepKind::CheckTool, "Tool " + std::to_string(at_.tool) + " must be in the spindle, at its old length.",
+    const std::string tool = at_.tool == 0 ? "The first tool" : "Tool " + std::to_string(at_.tool);
+    add(ResumeStepKind::CheckTool, tool + " must be in the spindle, at its old length.",
         line > 0 ? "Line " + std::to_string(line) + " called for it." : "It was in when the job began.",
         std::move(lines), true);
   }
@@ -121,12 +159,16 @@ class Steps {
     }
     const bool turns = at_.modal.spindle != SpindleDirection::Off;
     std::string text = turns ? "Spindle on" : "Spindle off";
+    // What is on in the mind of the controller may stand still (after homing, after a door), and then M3 alone is no
+    // news.
+    if (turns) lines.emplace_back("M5");
     std::string word{spindle_word(at_.modal.spindle)};
-    if (at_.spindle_rpm > 0) word += "S" + number_text(at_.spindle_rpm);
+    if (at_.spindle_rpm > 0 || in_.present.state().spindle_rpm > 0) word += "S" + number_text(at_.spindle_rpm);
     lines.push_back(word);
+    const bool is_wet = in_.present.state().modal.coolant != gcode::Coolant{};
+    if (is_wet || at_.modal.coolant == gcode::Coolant{}) lines.emplace_back("M9");
     if (at_.modal.coolant.mist) lines.emplace_back("M7");
     if (at_.modal.coolant.flood) lines.emplace_back("M8");
-    if (!at_.modal.coolant.mist && !at_.modal.coolant.flood) lines.emplace_back("M9");
     if (turns && in_.spin_up_s > 0) {
       lines.push_back("G4P" + number_text(in_.spin_up_s));
       text += ", and " + base::to_fixed(static_cast<double>(in_.spin_up_s), 1) + " s to come up to speed";
@@ -142,7 +184,7 @@ class Steps {
     std::string text;
     for (std::size_t axis = 0; axis < axes_; ++axis) {
       if (axis == kZ) continue;
-      (words += kAxisLetters.at(axis)) += number_text(at_.position_mm.at(axis));
+      words += machine_word(axis).value_or(kAxisLetters.at(axis) + number_text(at_.position_mm.at(axis)));
       (text += " ") += kAxisLetters.at(axis);
       text += base::to_fixed(static_cast<double>(at_.position_mm.at(axis)), 3);
     }
@@ -161,6 +203,12 @@ class Steps {
     lines.emplace_back(work_offset_name(at_.modal.work_offset));
     add_tool_length(lines, then.tool_length, now.tool_length);
     if (differ(then.g92, now.g92)) lines.push_back(is_zero(then.g92) ? "G92.1" : g92_line(then));
+    std::string exactly;
+    for (std::size_t axis = 0; axis < axes_; ++axis) {
+      if (axis != kZ && !machine_word(axis)) exactly += program_word(axis).value_or("");
+    }
+    // There it stands already, but for a rounding in the mind of the controller.
+    if (!exactly.empty()) lines.push_back("G0" + exactly);
     std::string text = "Offsets: " + lines_text(lines) + ".";
     add(ResumeStepKind::Offsets, std::move(text),
         "The program counts from there at this line; the rest agrees with what the controller has stored.",
@@ -214,10 +262,30 @@ class Steps {
     const float from = std::min(in_.safe_height_mm, in_.rapid_to_mm.value_or(in_.safe_height_mm));
     const float to = at_.position_mm[kZ];
     if (std::abs(from - to) < kNothing) return;
+    std::string word = "G53G1Z" + number_text(to);
+    if (const auto exact = machine_word(kZ)) {
+      word = "G53G1" + *exact;
+    } else if (const auto as_program = program_word(kZ)) {
+      word = "G1" + *as_program;
+    }
     add(ResumeStepKind::Plunge,
         "Fed to Z" + mm(to) + " at " + base::to_fixed(static_cast<double>(in_.plunge_mm_per_min), 0) + " mm/min.",
-        "The tool may meet material from here on.",
-        {"G53G1Z" + number_text(to) + "F" + number_text(in_.plunge_mm_per_min)});
+        "The tool may meet material from here on.", {word + "F" + number_text(in_.plunge_mm_per_min)});
+  }
+
+  /// The place of the line in machine coordinates, if that can be said exactly.
+  [[nodiscard]] std::optional<std::string> machine_word(std::size_t axis) const {
+    const float place = at_.position_mm.at(axis);
+    std::string word = exact_word("G53", axis, place, place, in_.present);
+    return word.empty() ? std::nullopt : std::optional{std::move(word)};
+  }
+
+  /// The same place as the program calls it, once its offsets are in force.
+  [[nodiscard]] std::optional<std::string> program_word(std::size_t axis) const {
+    const float place = at_.position_mm.at(axis);
+    const float called = place - in_.state.reader().work_coordinate_offset().at(axis);
+    std::string word = exact_word("", axis, place, called, in_.state.reader());
+    return word.empty() ? std::nullopt : std::optional{std::move(word)};
   }
 
   void modes() {
@@ -273,12 +341,7 @@ std::string number_text(float value) {
   int decimals = kMostDecimals;
   for (float size = std::abs(value); size >= 10.0F && decimals > 0; size /= 10.0F) --decimals;
   decimals = std::min(decimals, kDigits - 1);
-  std::string text = base::to_fixed(static_cast<double>(value), decimals);
-  if (text.contains('.')) {
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.ends_with('.')) text.pop_back();
-  }
-  return text == "-0" ? "0" : text;
+  return trimmed(base::to_fixed(static_cast<double>(value), decimals));
 }
 
 std::vector<ResumeStep> steps_to(const StepInputs& inputs) {
