@@ -139,6 +139,44 @@ TEST_P(ProgramFlows, AToolChangeStandsStillAndNamesTheTool) {
   EXPECT_THAT(told<session::LineRefused>(world), IsEmpty());
 }
 
+TEST_P(ProgramFlows, AtAToolChangeTheOperatorTouchesOffAndTheJobGoesOnFromItsPlace) {
+  World world{quick_serial(GetParam())};
+  ASSERT_TRUE(start(world, "G21G90\nG1X10Z5F3000\nT2 M6\nG1X20\nM30\n", 15s));
+  ASSERT_TRUE(is_held(world)) << world.session().job()->reason;
+  world.submit(session::SendLine{"G1X50F100"});
+  ASSERT_FALSE(told<session::CommandRefused>(world).empty());
+  EXPECT_EQ(told<session::CommandRefused>(world).back().reason, session::Refused::NotAtToolChange);
+  // Over the plate, down to it, and zero is there: the new tool is 2 mm shorter.
+  for (const auto* line : {"$J=G21G91X30F3000", "$J=G21G91Z-7F3000", "G10L20P1Z0"}) {
+    world.submit(session::SendLine{line});
+    world.run_for(5s);
+    EXPECT_TRUE(is_held(world)) << line;
+  }
+  EXPECT_NEAR(position_mm(world, 0), 40, 0.005);
+  EXPECT_NEAR(position_mm(world, 2), -2, 0.005);
+  world.submit(session::ResumeJob{});
+  ASSERT_TRUE(world.run_until(is_over, 2min));
+  EXPECT_EQ(world.session().job()->phase, JobPhase::Finished) << world.session().job()->reason;
+  EXPECT_NEAR(position_mm(world, 0), 20, 0.005);
+  EXPECT_NEAR(position_mm(world, 2), 3, 0.005) << "5 mm above the new zero";
+  EXPECT_THAT(told<session::LineRefused>(world), IsEmpty());
+}
+
+TEST_P(ProgramFlows, AStopWhileTheOperatorJogsKeepsThePosition) {
+  World world{quick_serial(GetParam())};
+  ASSERT_TRUE(start(world, "G21G90\nG1X10F3000\nT2 M6\nG1X20\nM30\n", 15s));
+  ASSERT_TRUE(is_held(world)) << world.session().job()->reason;
+  world.submit(session::SendLine{"$J=G21G91X100F600"});
+  world.run_for(2s);
+  EXPECT_EQ(world.session().snapshot().state, MachineState::Jog);
+  world.submit(session::StopJob{});
+  ASSERT_TRUE(world.run_until(is_over, 10s));
+  EXPECT_EQ(world.session().job()->phase, JobPhase::Stopped);
+  EXPECT_FALSE(world.session().job()->position_suspect);
+  ASSERT_TRUE(world.run_until(is_ready, 10s));
+  EXPECT_EQ(world.session().snapshot().state, MachineState::Idle);
+}
+
 TEST_P(ProgramFlows, AToolChangeCanBeTheEndOfTheJob) {
   World world{quick_serial(GetParam())};
   ASSERT_TRUE(start(world, "G21G90\nG1X10F3000\nT2\nM6\nG1X20\nM30\n", 15s));

@@ -206,6 +206,9 @@ void Job::follow_motion(Instant now, const machine::Snapshot& snapshot, std::str
         enter(now, rests ? JobPhase::Held : JobPhase::Holding, HoldCause::Door, machine::can_resume(snapshot));
       }
       return;
+    case MachineState::Jog:
+      if (state_.hold_cause == HoldCause::ToolChange) return;  // by the operator's hand
+      break;
     case MachineState::Tool:
       if (!may_hold || now < deaf_to_hold_until_) return;
       if (terms_.flow) state_.tool_change = terms_.flow->gate();
@@ -366,7 +369,7 @@ void Job::resume(Instant now) {
 
 void Job::stop(Instant now) {
   if (ended() || state_.phase == JobPhase::Stopping) return;
-  const bool rests = state_.phase == JobPhase::Held;
+  const bool rests = state_.phase == JobPhase::Held && !moving_;
   stop_feeding();
   enter(now, JobPhase::Stopping);
   stop_.begin(now, rests, deaf_to_hold_until_);

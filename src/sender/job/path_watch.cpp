@@ -96,6 +96,10 @@ void PathWatch::on_overruled() {
   forecast_.open(forecast_.line_sent(), "the job went on from a place off its path");
 }
 
+void PathWatch::on_work_by_hand() {
+  forecast_.open(forecast_.line_sent(), "offsets or tool length may have been set by hand");
+}
+
 std::optional<PathGap> PathWatch::take_gap() {
   if (!forecast_.is_open() || std::exchange(gap_told_, true)) return std::nullopt;
   const std::uint32_t line = forecast_.open_from_line();

@@ -38,6 +38,8 @@ class PathWatch {
                                                        const machine::Snapshot& snapshot);
   /// The operator goes on although the machine is not where the program says.
   void on_overruled();
+  /// The operator works by hand while the job waits.
+  void on_work_by_hand();
 
   [[nodiscard]] ExecutingLines executing() const { return follower_.executing(forecast_); }
   /// Once for each job that is not watched to its end.

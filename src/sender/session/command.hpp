@@ -36,7 +36,8 @@ struct StartJob {
 struct HoldJob {};
 
 /// Goes on after a hold, a program pause, a closed door, a tool change or a refused line (without it); refused while
-/// the machine still decelerates, because a cycle start in Hold:1 is lost (protocol.md 2).
+/// the machine still decelerates, because a cycle start in Hold:1 is lost (protocol.md 2). Behind jogs at a tool change
+/// the machine first goes back to where it waited.
 struct ResumeJob {};
 
 /// Hold, wait for standstill, then soft reset: position kept, no alarm. Without a job it stops what moves by hand; a
@@ -46,7 +47,8 @@ struct StopJob {};
 /// Soft reset now. Where the machine was moving, its position is suspect afterwards.
 struct AbortJob {};
 
-/// One line by hand, without line end. Refused when it holds bytes that a controller would take as realtime commands.
+/// One line by hand, without line end. Refused when it holds bytes that a controller would take as realtime commands,
+/// and while a job runs; at its tool changes the lines of ToolWork are taken.
 struct SendLine {
   std::string text;
 };
@@ -140,9 +142,10 @@ enum class Refused {
   NotAnswering,      ///< the controller has been silent for a while
   NoPendant,         ///< there is no control to take back
   ControlNotGiven,   ///< the controller does not give control back on this link
+  NotAtToolChange,   ///< a job waits for a tool, and the line would spoil what comes behind
 };
 BOOST_DESCRIBE_ENUM(Refused, NotConnected, NotIdentified, PendantInControl, MachineNotIdle, MachineInAlarm,
                     ForeignMotion, JobUnderWay, NoJob, NotAtRest, LineTooLong, RealtimeInLine, SettingsUnderWay,
-                    NeverSent, NotAnswering, NoPendant, ControlNotGiven)
+                    NeverSent, NotAnswering, NoPendant, ControlNotGiven, NotAtToolChange)
 
 }  // namespace kerf::session

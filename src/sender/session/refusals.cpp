@@ -27,6 +27,7 @@ std::string sentence_of(Refused reason) {
       return "The machine does not answer; wait until it does, or check cable and power. Hold, stop and reset are sent "
              "all the same.";
     case Refused::NoPendant: return "No pendant has the machine; there is nothing to take back.";
+    case Refused::NotAtToolChange: return "The job waits for a tool: this cannot be sent meanwhile.";
     case Refused::ControlNotGiven: return "This controller does not give control back on request.";
   }
   return "The command cannot be obeyed now.";

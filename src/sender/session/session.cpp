@@ -101,8 +101,11 @@ void Session::on_report(Instant now, MachineState before) {
   if (changes_settings()) settings_change_->on_report(now, snapshot());
   stop_.on_snapshot(now, snapshot());
   if (!has_job()) return;
+  const bool was_at_tool_change = is_at_tool_change();
   job_->on_snapshot(now, snapshot(), ledger().empty() ? std::string_view{} : ledger().oldest().text);
-  follow_path(now, asked);
+  follow_tool_work(now);
+  // Until the tool is in, the operator may have moved the machine.
+  if (!was_at_tool_change && !is_at_tool_change()) follow_path(now, asked);
   if (has_job()) watch_stall(now);
   if (has_job()) tell(JobProgressed{job_->state()});
 }
@@ -214,6 +217,7 @@ void Session::pump(Instant now) {
   if (!open_ || snapshot().pendant_in_control) return;
   // Before that the handshake looks after it.
   if (is_ready() && gate_.verdict(now) != GateVerdict::Open) return;
+  if (tool_work_.must_wait()) return;
   if (ledger().empty()) stall_.on_progress(now);
   on_sent(now, streamer_.pump(now, outbox_.lines));
 }
@@ -224,6 +228,7 @@ void Session::advance_to(Instant now) {
   handshake_.advance_to(now, snapshot());
   if (has_job()) job_->advance_to(now);
   stop_.advance_to(now);
+  tool_work_.advance_to(now);
   if (changes_settings()) settings_change_->advance_to(now);
   if (reset_pending_until_ && now >= *reset_pending_until_) {
     reset_pending_until_.reset();
@@ -242,7 +247,7 @@ Instant Session::next_deadline() const {
   if (changes_settings()) deadline = std::min(deadline, settings_change_->next_deadline());
   const bool is_storing = changes_settings() && settings_change_->is_storing();
   if (is_ready() && !is_storing) deadline = std::min({deadline, poller_.next_deadline(), refresh_.next_deadline()});
-  return std::min({deadline, pendant_.next_deadline(), start_until_});
+  return std::min({deadline, tool_work_.next_deadline(), pendant_.next_deadline(), start_until_});
 }
 
 Outbox Session::take_outbox() {

@@ -31,6 +31,7 @@
 #include "sender/session/settings_change.hpp"
 #include "sender/session/state_refresh.hpp"
 #include "sender/session/status_poller.hpp"
+#include "sender/session/tool_work.hpp"
 #include "sender/streaming/streamer.hpp"
 #include "sender/streaming/window.hpp"
 
@@ -172,6 +173,11 @@ class Session {
   void obey_job(Instant now, job::JobOrder order);
   void follow_stop(Instant now);
   void cancel_jog();
+  [[nodiscard]] bool is_at_tool_change() const;
+  [[nodiscard]] std::optional<Refused> why_no_tool_work(Instant now) const;
+  void send_by_hand(Instant now, std::string text);
+  void go_back_from_tool_work();
+  void follow_tool_work(Instant now);
   void on_jog_answered(const streaming::OwedLine& line);
   void follow_settings(Instant now);
   void on_operator_line_accepted(Instant now, std::string_view text);
@@ -231,6 +237,7 @@ class Session {
   /// A jog was cancelled while others were owed.
   bool cancels_owed_jogs_ = false;
   job::PathWatch path_;
+  ToolWork tool_work_;
   std::optional<SettingsChange> settings_change_;
   /// What the machine had at the last connection, until it was compared.
   std::optional<RecallSettings> recalled_;

@@ -17,9 +17,9 @@ using streaming::OwedLine;
 using streaming::Purpose;
 using vocabulary::MachineState;
 
-/// May move the machine, or change how it reads later lines.
-bool acts(Purpose purpose) {
-  return purpose != Purpose::Question && purpose != Purpose::Setting;
+/// Part of the job: it may move the machine, or change how later lines are read.
+bool belongs_to_job(Purpose purpose) {
+  return purpose == Purpose::JobLine || purpose == Purpose::JobSync || purpose == Purpose::ClearLatch;
 }
 
 }  // namespace
@@ -120,7 +120,7 @@ void Session::on_answer(Instant now, const std::optional<OwedLine>& line, int er
     incidents_.on_accepted(*line);
   }
   if (line->purpose != Purpose::Question) refresh_.on_change(now);
-  if (has_job() && acts(line->purpose)) path_.on_answer(line->file_line, error_code);
+  if (has_job() && belongs_to_job(line->purpose)) path_.on_answer(line->file_line, error_code);
   std::string meaning;
   if (error_code != 0) {
     const auto& known = handshake_.collector();
@@ -145,7 +145,13 @@ void Session::on_answer(Instant now, const std::optional<OwedLine>& line, int er
       if (changes_settings()) settings_change_->on_answer(now, error_code, meaning);
       break;
     case Purpose::Operator:
-      if (error_code == 0) on_operator_line_accepted(now, line->text);
+      tool_work_.on_answer();
+      if (error_code == 0) {
+        on_operator_line_accepted(now, line->text);
+      } else if (tool_work_.is_returning()) {
+        tool_work_.set_returning(false);
+        streamer_.drop_queued(Purpose::Operator);
+      }
       break;
     case Purpose::ClearLatch:
     case Purpose::Proof: break;
@@ -167,7 +173,7 @@ void Session::on_answer(Instant now, const std::optional<OwedLine>& line, int er
 void Session::on_sent(Instant now, const std::vector<OwedLine>& lines) {
   for (const OwedLine& line : lines) {
     if (line.purpose != Purpose::Question) gate_.on_activity(now);
-    if (has_job() && acts(line.purpose)) path_.on_sent(line.file_line, line.text);
+    if (has_job() && belongs_to_job(line.purpose)) path_.on_sent(line.file_line, line.text);
     tell(LineSent{.purpose = line.purpose, .file_line = line.file_line, .text = line.text});
   }
 }

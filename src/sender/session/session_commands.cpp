@@ -124,7 +124,9 @@ void Session::begin_job(Instant now, const StartJob& command) {
 }
 
 std::optional<Refused> Session::why_no_line(Instant now, std::string_view text) const {
-  if (const auto reason = why_nothing(now)) return reason;
+  const auto reason = is_at_tool_change() ? why_no_tool_work(now) : why_nothing(now);
+  if (reason) return reason;
+  if (is_at_tool_change() && !ToolWork::why_not(text).empty()) return Refused::NotAtToolChange;
   if (snapshot().reset_required) return Refused::MachineInAlarm;
   if (poller_.is_silent(now) && !may_be_silent()) return Refused::NotAnswering;
   if (why_text_is_eaten(text)) return Refused::RealtimeInLine;
@@ -140,7 +142,13 @@ std::optional<std::string> Session::why_text_is_eaten(std::string_view text) con
 void Session::obey(Instant now, const SendLine& command) {
   if (const auto reason = why_no_line(now, command.text)) {
     const bool is_eaten = reason == Refused::RealtimeInLine;
-    refuse(*reason, is_eaten ? why_text_is_eaten(command.text).value_or("") : std::string{});
+    refuse(*reason, is_eaten                             ? why_text_is_eaten(command.text).value_or("")
+                    : reason == Refused::NotAtToolChange ? ToolWork::why_not(command.text)
+                                                         : std::string{});
+    return;
+  }
+  if (is_at_tool_change()) {
+    send_by_hand(now, command.text);
     return;
   }
   last_line_jogs_ = streaming::is_jog(command.text);

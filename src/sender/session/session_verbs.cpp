@@ -22,6 +22,7 @@ bool Session::may_be_jogging() const {
 }
 
 void Session::cancel_jog() {
+  tool_work_.set_returning(false);
   streamer_.drop_queued(Purpose::Operator);
   send_byte(Realtime::JogCancel);
   // grblHAL drops every unread line with it (protocol.md 4.4). Elsewhere a jog that waits for planner room is planned
@@ -39,7 +40,7 @@ void Session::on_jog_answered(const streaming::OwedLine& line) {
 }
 
 void Session::obey(Instant now, const HoldJob&) {
-  if (has_job())
+  if (has_job() && !(is_at_tool_change() && may_be_jogging()))
     job_->hold(now);
   else if (may_be_jogging())
     // grblHAL takes no hold while it jogs (protocol.md 6.8); Grbl and Rabbit cancel either way.
@@ -58,6 +59,10 @@ void Session::obey(Instant now, const ResumeJob&) {
     refuse(Refused::NotAtRest);
     return;
   }
+  if (is_at_tool_change() && tool_work_.has_worked()) {
+    go_back_from_tool_work();
+    return;
+  }
   if (has_job() && job_->state().departure) path_.on_overruled();
   if (has_job())
     job_->resume(now);
@@ -67,6 +72,7 @@ void Session::obey(Instant now, const ResumeJob&) {
 
 void Session::obey(Instant now, const StopJob&) {
   if (has_job()) {
+    if (is_at_tool_change() && may_be_jogging()) cancel_jog();
     job_->stop(now);
     return;
   }
@@ -95,7 +101,7 @@ void Session::obey(Instant now, const AbortJob&) {
 }
 
 void Session::obey(Instant, const CancelJog&) {
-  if (has_job()) {
+  if (has_job() && !is_at_tool_change()) {
     refuse(Refused::JobUnderWay);
     return;
   }
