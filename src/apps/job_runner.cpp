@@ -18,6 +18,11 @@ using namespace std::chrono_literals;
 /// The clock of the progress display runs on between two reports.
 constexpr Duration kRedraw = 250ms;
 
+constexpr std::string_view kLinePrompt = "For the machine ($J= jogs, G10, G43.1, $TPW; Enter sends, Esc leaves): ";
+constexpr char kEscape = '\x1b';
+constexpr char kBackspace = '\b';
+constexpr char kDelete = '\x7f';
+
 ExitStatus status_of(job::JobPhase phase) {
   switch (phase) {
     case job::JobPhase::Finished: return ExitStatus::Done;
@@ -51,6 +56,11 @@ std::string tool_change_sentence(const job::JobState& job) {
   if (!job.tool_change) return "The machine waits for a tool change.";
   const std::string tool = job.tool_change->tool ? fmt::format("tool {}", *job.tool_change->tool) : "the next tool";
   return fmt::format("Change to {}, measure it again if its length differs, then continue.", tool);
+}
+
+/// The operator may jog, touch off and measure.
+bool takes_lines(const job::JobState& job) {
+  return job.phase == job::JobPhase::Held && job.hold_cause == job::HoldCause::ToolChange;
 }
 
 /// Why it stands, and what the operator can do before he goes on.
@@ -271,13 +281,30 @@ void JobRunner::on_signal(int signal) {
 void JobRunner::on_key(char key) {
   if (awaits_answer_) return answer(key);
   if (!is_started_) return;
+  if (typed_) return type(key);
   if ((key == ' ' || key == '!') && wish_ == Wish::Cut && !is_asking_) return interrupt();
   if (!is_asking_) return;
   if (key == 'c' || key == 'C' || key == '~') {
     go_on();
   } else if (key == 's' || key == 'S') {
     wish_stop();
+  } else if ((key == 't' || key == 'T') && takes_lines(*host_->session().job())) {
+    typed_.emplace();
+    view_.asked(*host_->session().job(), kLinePrompt);
   }
+}
+
+void JobRunner::type(char key) {
+  const bool is_end = key == '\r' || key == '\n';
+  if (is_end && !typed_->empty()) host_->submit(session::SendLine{*typed_});
+  if (is_end || key == kEscape) {
+    typed_.reset();
+  } else if (key == kBackspace || key == kDelete) {
+    if (!typed_->empty()) typed_->pop_back();
+  } else if (key >= ' ' && key < kDelete) {
+    *typed_ += key;
+  }
+  if (is_asking_) view_.asked(*host_->session().job(), typed_ ? std::string{kLinePrompt} + *typed_ : question_);
 }
 
 void JobRunner::go_on() {
@@ -325,7 +352,11 @@ void JobRunner::ask_if_held(const job::JobState& job) {
   if (is_asking_ || wish_ == Wish::Stop || wish_ == Wish::Abort) return;
   is_asking_ = true;
   const std::string where = fmt::format("Held at line {}. {}", job.progress.shown_line(), held_sentence(job));
-  view_.asked(job, can_ask_ ? where + " [c]ontinue or [s]top? " : where + " SIGUSR1 continues, SIGINT stops the job.");
+  question_ = !can_ask_          ? where + " SIGUSR1 continues, SIGINT stops the job."
+              : takes_lines(job) ? where + " [c]ontinue, [t]ype a line for the machine, or [s]top? "
+                                 : where + " [c]ontinue or [s]top? ";
+  typed_.reset();
+  view_.asked(job, question_);
 }
 
 void JobRunner::end_job(const job::JobState& job) {

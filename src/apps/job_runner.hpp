@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "apps/exit_status.hpp"
 #include "apps/job_preparation.hpp"
@@ -41,6 +42,7 @@ class JobRunner {
   void on_lost(const io::TransportError& error);
   void on_signal(int signal);
   void on_key(char key);
+  void type(char key);
   void go_on();
   void interrupt();
   void wish_stop();
@@ -83,6 +85,9 @@ class JobRunner {
   std::optional<ExitStatus> status_;
   Wish wish_ = Wish::Cut;
   bool is_asking_ = false;
+  std::string question_;
+  /// What is being typed for the machine, at a tool change.
+  std::optional<std::string> typed_;
   bool is_holding_ = false;
   bool is_started_ = false;
   io::Timer redraw_;
