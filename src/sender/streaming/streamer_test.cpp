@@ -115,11 +115,11 @@ TEST(SoloLines, KnowsTheWritersOnly) {
 }
 
 TEST(Window, IsTheLeastOfBufferAndTwentyFiveMilliseconds) {
-  EXPECT_EQ(window_bytes(128, {.baud = 115200}), 128U);
+  EXPECT_EQ(window_bytes(128, {.baud = 115200}), 127U);
   EXPECT_EQ(window_bytes(1023, {.baud = 115200}), 288U);
   EXPECT_EQ(window_bytes(1023, {.baud = 9600}), 24U);
   EXPECT_EQ(window_bytes(1023, {.baud = std::nullopt, .network = true}), 256U);
-  EXPECT_EQ(window_bytes(1023, {}), 1023U);
+  EXPECT_EQ(window_bytes(1023, {}), 1022U);
 }
 
 // Random lines, answers and losses in any order: the account is never overdrawn, and every line is settled or struck
