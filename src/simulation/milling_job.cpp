@@ -64,7 +64,7 @@ class MillingJob {
 
   void between_operations() {
     up();
-    switch (dice_.below(9)) {
+    switch (dice_.below(10)) {
       case 0: out_.use_inches(dice_.one_in(2)); break;
       case 1: out_.use_second_zero(!out_.second_zero()); break;
       case 2:
@@ -80,6 +80,7 @@ class MillingJob {
       case 4:
         if (features_.tool_changes) change_tool();
         break;
+      case 6: out_.move_second_zero(dice_.between(-9, 9), dice_.between(-9, 9)); break;
       case 5: out_.say(dice_.pick({"G4P0.3", "M8", "M9", "S11000", "(a comment; with words)", ""})); break;
       default: break;
     }
@@ -100,7 +101,7 @@ class MillingJob {
       case 1: pocket(); break;
       case 2: round_contour(); break;
       case 3: rounded_rectangle(); break;
-      case 4: dice_.one_in(2) ? engrave() : peck(); break;
+      case 4: engrave_peck_or_groove(); break;
       default: canned_holes(); break;
     }
     out_.use_increments(false);
@@ -209,6 +210,28 @@ class MillingJob {
       const double x = std::clamp(at.x + dice_.within(-8, 8), 0.0, kSizeMm);
       const double y = std::clamp(at.y + dice_.within(-8, 8), 0.0, kSizeMm);
       out_.feed(dice_.one_in(3) ? Target{.x = x, .y = y, .z = dice_.within(-1.5, -0.3)} : Target{.x = x, .y = y}, cut_);
+    }
+  }
+
+  void engrave_peck_or_groove() {
+    switch (dice_.below(3)) {
+      case 0: engrave(); break;
+      case 1: peck(); break;
+      default: grooves(); break;
+    }
+  }
+
+  /// Arcs that stand upright.
+  void grooves() {
+    const std::size_t axis = dice_.one_in(2) ? 0 : 1;
+    enter(dice_.between(4, 20), dice_.between(4, 20), -0.2);
+    double from = axis == 0 ? out_.at().x : out_.at().y;
+    for (int groove = dice_.between(1, 4); groove > 0; --groove) {
+      const double to = from + dice_.between(6, 12);
+      out_.groove(axis, to, dice_.between(9, 15), cut_);
+      out_.groove(axis, from, dice_.between(9, 15), cut_);
+      from += 1;
+      out_.feed(axis == 0 ? Target{.x = from} : Target{.y = from}, cut_);
     }
   }
 

@@ -23,8 +23,8 @@ struct MillingFeatures {
 inline constexpr double kSecondZeroMm[] = {7.0, -3.0, 1.5};
 
 /// A program of about `lines` lines for G54, within X and Y from 0 to 40 and Z from -6 to 10, at the feeds of a small
-/// router. It uses inches and millimetres, G90 and G91, G54 and G55, G92, arcs with I J and with R, ramps, pauses and
-/// tools as the dice fall.
+/// router. It uses inches and millimetres, G90 and G91, G54 and G55, G92 and G10 L20, arcs with I J and with R
+/// in all planes, ramps, pauses and tools as the dice fall.
 [[nodiscard]] std::string milling_job(Dice& dice, const MillingFeatures& features, std::size_t lines);
 
 }  // namespace kerf::simulation

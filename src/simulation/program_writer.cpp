@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "common/base/text.hpp"
-#include "simulation/milling_job.hpp"
 
 namespace kerf::simulation {
 namespace {
@@ -23,7 +22,7 @@ double& ProgramWriter::part_of(Point& point, std::size_t axis) {
 }
 
 double ProgramWriter::zero_of(std::size_t axis) const {
-  return (second_zero_ ? kSecondZeroMm[axis] : 0.0) + shift_[axis];
+  return (second_zero_ ? second_.at(axis) : 0.0) + shift_[axis];
 }
 
 void ProgramWriter::say(std::string_view line) {
@@ -90,6 +89,31 @@ void ProgramWriter::arc(bool clockwise, const Target& to, double center_x, doubl
   say(line);
 }
 
+void ProgramWriter::groove(std::size_t axis, double to, double height, double mm_per_min) {
+  const Point from = at_;
+  const double way = to - part_of(at_, axis);
+  // Seen along the third axis, through the lowest point: the two planes look from opposite sides.
+  const bool clockwise = (way > 0) == (axis == 0);
+  std::string line = axis == 0 ? "G18" : "G19";
+  motion_.clear();
+  add_motion(line, clockwise ? "G2" : "G3");
+  add_axes(line, axis == 0 ? Target{.x = to, .z = from.z} : Target{.y = to, .z = from.z});
+  static_cast<void>(add_length(line, axis == 0 ? 'I' : 'J', way / 2));
+  static_cast<void>(add_length(line, 'K', height));
+  add_feed(line, mm_per_min);
+  say(line);
+  say("G17");
+}
+
+void ProgramWriter::move_second_zero(double x, double y) {
+  const double unit = inches_ ? kMmPerInch : 1.0;
+  const double named_x = rounded(x / unit, 3);
+  const double named_y = rounded(y / unit, 3);
+  second_[0] = at_.x - named_x * unit - shift_[0];
+  second_[1] = at_.y - named_y * unit - shift_[1];
+  say("G10L20P2X" + base::to_fixed(named_x, 3) + "Y" + base::to_fixed(named_y, 3));
+}
+
 void ProgramWriter::drill(double bottom_z, double clear_z, double mm_per_min, std::optional<double> peck) {
   std::string line = peck ? "G99G83" : "G98G81";
   static_cast<void>(add_length(line, 'X', at_.x - zero_of(0)));
@@ -129,8 +153,8 @@ void ProgramWriter::use_second_zero(bool second) {
 
 void ProgramWriter::shift_zero(double x, double y) {
   const double unit = inches_ ? kMmPerInch : 1.0;
-  const double base_x = second_zero_ ? kSecondZeroMm[0] : 0.0;
-  const double base_y = second_zero_ ? kSecondZeroMm[1] : 0.0;
+  const double base_x = second_zero_ ? second_[0] : 0.0;
+  const double base_y = second_zero_ ? second_[1] : 0.0;
   const double named_x = rounded(x / unit, 3);
   const double named_y = rounded(y / unit, 3);
   shift_ = {at_.x - base_x - named_x * unit, at_.y - base_y - named_y * unit, 0.0};

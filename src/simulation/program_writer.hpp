@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "simulation/milling_job.hpp"
 #include "simulation/stock.hpp"
 
 namespace kerf::simulation {
@@ -28,6 +29,8 @@ class ProgramWriter {
   void feed(const Target& to, double mm_per_min) { move("G1", to, mm_per_min); }
   /// In the XY plane; `radius_form` only for less than half a turn.
   void arc(bool clockwise, const Target& to, double center_x, double center_y, double mm_per_min, bool radius_form);
+  /// A groove along X (G18) or Y (G19) to `to`, deepest in the middle: part of a circle whose centre is `height` above.
+  void groove(std::size_t axis, double to, double height, double mm_per_min);
   /// G81 or G83 at the present place; ends with the tool at `clear_z`.
   void drill(double bottom_z, double clear_z, double mm_per_min, std::optional<double> peck);
   /// The next hole of the cycle.
@@ -38,6 +41,8 @@ class ProgramWriter {
   void use_increments(bool increments);
   /// G54 or G55.
   void use_second_zero(bool second);
+  /// G10 L20: the present place gets this name in G55.
+  void move_second_zero(double x, double y);
   /// G92: calls the present place by another name.
   void shift_zero(double x, double y);
   void end_shift();
@@ -66,6 +71,8 @@ class ProgramWriter {
   bool inches_ = false;
   bool increments_ = false;
   bool second_zero_ = false;
+  /// Of G55, from that of G54.
+  std::array<double, 3> second_{kSecondZeroMm[0], kSecondZeroMm[1], kSecondZeroMm[2]};
   std::array<double, 3> shift_{};
   /// Modal; empty when the next motion must name it.
   std::string motion_;
