@@ -7,7 +7,7 @@ PEER ?=
 # How long `make test` runs each fuzz target.
 KERF_FUZZ_SECONDS ?= 20
 
-.PHONY: run build test campaign bench bench-stream docs tidy format lint clean
+.PHONY: run build test campaign conformance bench bench-stream docs tidy format lint clean
 
 # A part of about four minutes, cut by the built-in virtual grblHAL ten times as fast.
 run: build
@@ -38,6 +38,16 @@ campaign:
 	cmake --preset release -DKERF_TESTS=ON
 	cmake --build --preset release --target campaign -j $(JOBS)
 	build/release/tests/campaign/campaign --runs $(RUNS) --seed $(SEED) --jobs $(JOBS)
+
+# HOURS hours of clean jobs without a false alarm, and DAMAGED jobs with a damaged byte that are noticed, on each
+# firmware (src/simulation/conformance.hpp), from seed SEED on. `conformance_hours --seed N` runs one again.
+HOURS ?= 100
+DAMAGED ?= 130
+conformance:
+	tools/install_dependencies.sh test
+	cmake --preset release -DKERF_TESTS=ON
+	cmake --build --preset release --target conformance_hours -j $(JOBS)
+	build/release/tests/conformance_hours --hours $(HOURS) --damaged $(DAMAGED) --from-seed $(SEED)
 
 # How fast Kerf plans and simulates (bench/README.md). The simulator listens on every interface, so it gets a network of
 # its own.

@@ -22,6 +22,8 @@ using vocabulary::Firmware;
 
 constexpr double kOffMm = 0.05;
 constexpr std::size_t kAxes = 3;
+/// Of the machine that gets damaged jobs.
+constexpr double kSteps = 250.0;
 
 firmware::StoredState machine_of(Dice& dice, Firmware firmware) {
   firmware::StoredState stored;
@@ -40,10 +42,11 @@ firmware::StoredState machine_of(Dice& dice, Firmware firmware) {
   return stored;
 }
 
-WorldOptions world_of(Dice& dice, Firmware firmware) {
+WorldOptions world_of(Dice& dice, Firmware firmware, bool keeps_conversation) {
   auto options = dice.one_in(2) ? serial_world(firmware, 115200) : network_world(firmware, 15ms);
   options.stored = machine_of(dice, firmware);
-  options.keeps_transcript = options.keeps_wire_log = false;
+  options.keeps_transcript = keeps_conversation;
+  options.keeps_wire_log = false;
   return options;
 }
 
@@ -110,9 +113,9 @@ std::string summary(const job::JobState& job) {
 
 }  // namespace
 
-CleanRun clean_run(Firmware firmware, std::uint64_t seed) {
+CleanRun clean_run(Firmware firmware, std::uint64_t seed, bool keeps_conversation) {
   Dice dice{seed};
-  World world{world_of(dice, firmware)};
+  World world{world_of(dice, firmware, keeps_conversation)};
   world.open();
   CleanRun run;
   if (!world.run_until(is_ready, 60s)) {
@@ -139,6 +142,7 @@ CleanRun clean_run(Firmware firmware, std::uint64_t seed) {
     if (job->phase == job::JobPhase::Running) disturb(world, dice);
   }
   run.hours = base::to_seconds(world.now() - began) / 3600.0;
+  run.conversation = world.transcript_text();
   run.reports = static_cast<std::size_t>(world.session().snapshot().reports - reports_before);
   for (const auto& event : world.events()) {
     if (const auto* gap = std::get_if<session::PathUnwatched>(&event)) run.gap = gap->sentence;
@@ -214,25 +218,71 @@ class TruePath {
   std::size_t reached_ = 0;
 };
 
+/// When the machine left its path, as nobody but the simulation knows it.
+class Excursion {
+ public:
+  explicit Excursion(const TruePath& path) : machine_{path}, told_{path} {}
+
+  void look(const World& world) {
+    const auto& snapshot = world.session().snapshot();
+    const Instant now = world.now();
+    const bool is_off = machine_.off(point_of(world.controller().position_steps(), kSteps)) > kOffMm;
+    if (is_off && !since_) since_ = now;
+    if (is_off) back_.reset();
+    if (since_ && !is_off && !back_) back_ = now;
+    if (since_ && now <= *since_ + kOnTheWay) reports_then_ = snapshot.reports;
+    if (snapshot.reports != reports_ && snapshot.machine_position_mm) {
+      reports_ = snapshot.reports;
+      Point at{};
+      std::ranges::copy_n(snapshot.machine_position_mm->begin(), kAxes, at.begin());
+      is_told_ = is_told_ || (since_ && told_.off(at) > kOffMm);
+    }
+    if (!is_told_ && back_ && now > *back_ + kOnTheWay) {
+      ++untold_;
+      since_.reset();
+      back_.reset();
+    }
+  }
+
+  [[nodiscard]] std::optional<Instant> since() const { return since_; }
+  /// Reports that were made since then.
+  [[nodiscard]] int reports(const World& world) const {
+    return static_cast<int>(world.session().snapshot().reports - reports_then_);
+  }
+  /// How often it was back before a report told of it.
+  [[nodiscard]] int untold() const { return untold_; }
+
+ private:
+  static constexpr Duration kOnTheWay = 20ms;
+  TruePath machine_;
+  TruePath told_;
+  std::optional<Instant> since_;
+  std::optional<Instant> back_;
+  std::uint64_t reports_then_ = 0;
+  std::uint64_t reports_ = 0;
+  bool is_told_ = false;
+  int untold_ = 0;
+};
+
 }  // namespace
 
-DamagedRun damaged_run(Firmware firmware, std::uint64_t seed) {
+DamagedRun damaged_run(Firmware firmware, std::uint64_t seed, bool keeps_conversation) {
   Dice dice{seed};
   auto options = serial_world(firmware, 115200);
   firmware::StoredState stored;
   stored.initialised = true;
-  constexpr double kSteps = 250.0;
   for (const std::string axis : {"0", "1", "2"}) {
     stored.settings["10" + axis] = "250.000";
     stored.settings["11" + axis] = "3000.000";
     stored.settings["12" + axis] = "300.000";
   }
   options.stored = stored;
-  options.keeps_transcript = options.keeps_wire_log = false;
+  options.keeps_transcript = keeps_conversation;
+  options.keeps_wire_log = false;
   DamagedRun run;
   const std::string text = varied_job(dice, firmware, {.pauses = false, .probing = false}, 12);
   run.program = text;
-  TruePath path{text, firmware, stored, kSteps};
+  Excursion excursion{TruePath{text, firmware, stored, kSteps}};
   World world{options};
   world.open();
   if (!world.run_until(is_ready, 60s)) return run;
@@ -245,36 +295,35 @@ DamagedRun damaged_run(Firmware firmware, std::uint64_t seed) {
   world.run_for(dice.up_to(1500us));
   static_cast<void>(
       world.order(dice.pick<std::string>({"corrupt to next 1", "drop to next 1", "duplicate to next 1"})));
-  std::optional<Instant> off_since;
-  std::uint64_t reports_then = 0;
-  constexpr Duration kOnTheWay = 20ms;
   const auto job_said = [&] { return world.session().job() && world.session().job()->departure; };
   const Instant end = world.now() + 2h;
   while (!is_over(world) && world.now() < end && world.step(end)) {
     if (job_said()) break;
     const auto& job = world.session().job();
     if (job->phase == job::JobPhase::Draining || job->refusal || job->alarm_code) {
-      if (!off_since) run.end = DamagedRunEnd::Refused;
+      if (!excursion.since()) run.end = DamagedRunEnd::Refused;
       break;
     }
     if (job->phase == job::JobPhase::Held) break;
-    if (!off_since && path.off(point_of(world.controller().position_steps(), kSteps)) > kOffMm) off_since = world.now();
-    if (off_since && world.now() <= *off_since + kOnTheWay) reports_then = world.session().snapshot().reports;
-    if (off_since && world.now() - *off_since > 10s) break;
+    excursion.look(world);
+    if (excursion.since() && world.now() - *excursion.since() > 10s) break;
     if (world.session().link_health(world.now()).silent_for_s.value_or(0) > 20) break;
   }
+  run.conversation = world.transcript_text();
   for (const auto& record : world.log()) {
     if (record.kind == firmware::RigRecordKind::Fault) run.damage += record.what + "; ";
   }
   if (job_said()) run.said = describe(*world.session().job()->departure);
-  if (off_since) {
-    run.noticed_after = world.now() - *off_since;
-    run.reports = static_cast<int>(world.session().snapshot().reports - reports_then);
+  if (excursion.since()) {
+    run.noticed_after = world.now() - *excursion.since();
+    run.reports = excursion.reports(world);
     run.end = job_said() && run.reports <= 1 ? DamagedRunEnd::Held : DamagedRunEnd::Missed;
   } else if (job_said()) {
     run.end = DamagedRunEnd::Held;
   } else if (world.session().job() && world.session().job()->phase != job::JobPhase::Finished) {
     run.end = DamagedRunEnd::Refused;
+  } else if (excursion.untold() > 0) {
+    run.end = DamagedRunEnd::Untold;
   }
   return run;
 }

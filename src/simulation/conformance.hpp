@@ -25,14 +25,17 @@ struct CleanRun {
   /// The job did not come to its end.
   std::optional<std::string> unfinished;
   std::string program;
+  /// What was said on the wire, where it was to be kept.
+  std::string conversation;
 };
 
-[[nodiscard]] CleanRun clean_run(vocabulary::Firmware firmware, std::uint64_t seed);
+[[nodiscard]] CleanRun clean_run(vocabulary::Firmware firmware, std::uint64_t seed, bool keeps_conversation = false);
 
 enum class DamagedRunEnd : std::uint8_t {
   NoDeparture,  ///< the machine kept to the path all the same
   Refused,      ///< the controller refused a line, raised an alarm or stopped answering before the machine was off
   Held,         ///< Kerf held the machine, and said why
+  Untold,       ///< it left the path and was back before a report was made
   Missed,       ///< the machine was off its path, and Kerf did not notice in time
 };
 
@@ -47,8 +50,10 @@ struct DamagedRun {
   int reports = 0;
   std::string said;
   std::string program;
+  std::string conversation;
 };
 
-[[nodiscard]] DamagedRun damaged_run(vocabulary::Firmware firmware, std::uint64_t seed);
+[[nodiscard]] DamagedRun damaged_run(vocabulary::Firmware firmware, std::uint64_t seed,
+                                     bool keeps_conversation = false);
 
 }  // namespace kerf::simulation

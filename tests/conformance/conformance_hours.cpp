@@ -39,7 +39,7 @@ bool run_clean(std::string_view name, Firmware firmware, const Options& options)
   std::size_t gaps = 0;
   bool passed = true;
   for (std::uint64_t seed = options.seed; total.hours < options.hours; ++seed) {
-    const CleanRun run = clean_run(firmware, seed);
+    const CleanRun run = clean_run(firmware, seed, options.one_seed && options.prints);
     total.hours += run.hours;
     total.lines += run.lines;
     total.reports += run.reports;
@@ -55,7 +55,7 @@ bool run_clean(std::string_view name, Firmware firmware, const Options& options)
                   run.unfinished->c_str());
     std::fflush(stdout);
     passed = passed && !run.false_alarm && !run.unfinished;
-    if (options.one_seed && options.prints) std::fputs(run.program.c_str(), stdout);
+    if (options.one_seed && options.prints) std::printf("%s\n%s", run.program.c_str(), run.conversation.c_str());
     if (options.one_seed) break;
   }
   std::printf("%s: %.1f clean hours, %zu jobs, %zu lines, %zu reports, %zu jobs not watched to their end: %s\n",
@@ -64,11 +64,11 @@ bool run_clean(std::string_view name, Firmware firmware, const Options& options)
 }
 
 bool run_damaged(std::string_view name, Firmware firmware, const Options& options) {
-  std::size_t ends[4] = {};
+  std::size_t ends[5] = {};
   double worst_s = 0;
   for (std::uint64_t i = 0; i < options.damaged; ++i) {
     const std::uint64_t seed = options.seed + i;
-    const DamagedRun run = damaged_run(firmware, seed);
+    const DamagedRun run = damaged_run(firmware, seed, options.one_seed && options.prints);
     ++ends[static_cast<std::size_t>(run.end)];
     if (run.end == DamagedRunEnd::Held) worst_s = std::max(worst_s, base::to_seconds(run.noticed_after));
     if (run.end == DamagedRunEnd::Missed || options.one_seed) {
@@ -77,13 +77,16 @@ bool run_damaged(std::string_view name, Firmware firmware, const Options& option
                   base::to_seconds(run.noticed_after), run.reports, run.damage.c_str(), run.said.c_str());
       std::fflush(stdout);
     }
-    if (options.one_seed && options.prints) std::fputs(run.program.c_str(), stdout);
+    if (options.one_seed && options.prints) std::printf("%s\n%s", run.program.c_str(), run.conversation.c_str());
     if (options.one_seed) break;
   }
-  std::printf("%s: %llu damaged jobs: %zu kept to the path, %zu refused, %zu held (worst after %.3f s), %zu missed\n",
-              name.data(), static_cast<unsigned long long>(options.damaged), ends[0], ends[1], ends[2], worst_s,
-              ends[3]);
-  return ends[3] == 0;
+  std::printf(
+      "%s: %llu damaged jobs: %zu kept to the path, %zu refused, %zu held (worst after %.3f s), %zu back on the path "
+      "between two reports, "
+      "%zu missed\n",
+      name.data(), static_cast<unsigned long long>(options.damaged), ends[0], ends[1], ends[2], worst_s, ends[3],
+      ends[4]);
+  return ends[4] == 0;
 }
 
 }  // namespace

@@ -30,8 +30,11 @@ constexpr double kJumpSlackMm = 1.0;
 /// Speeds are told when the report is made, overrides now and then.
 constexpr int kStrangeSpeeds = 3;
 constexpr Duration kOverrideSettles = 2s;
+/// What a segment of prepared motion takes on every firmware (motion.md 1.3).
+constexpr Duration kSegmentTime = 10ms;
 constexpr double kFeedTolerance = 1.05;
 constexpr double kFeedSlack = 10.0;
+constexpr double kHalfInchMm = 12.7;
 constexpr double kRpmTolerance = 0.02;
 constexpr double kRpmSlack = 2.0;
 constexpr double kPercent = 100.0;
@@ -173,16 +176,18 @@ std::optional<PathDeparture> PathFollower::on_report(PathForecast& forecast, Pat
   Fit found = fit_with_any_offset(forecast, report, limit_s(report));
   if (!found.first && forecast.is_open() && (found.reaches_end || is_lost_)) {
     is_lost_ = true;
-    note_time(report);
+    note(report);
     return std::nullopt;
   }
   bool is_early = false;
   if (!found.first) {
     const Fit later = fit_with_any_offset(forecast, report, kUnlimited);
     is_early = later.first.has_value();
-    if (is_early && ++early_ == 1) return std::nullopt;  // the next report says whether that was a doubtful time
-    // No machine with these settings is that fast: a simulator, whose clock is not ours.
-    if (is_early && is_too_fast(forecast, report)) rules_.clock = kUnlimited;
+    // No machine with this program is that fast: a simulator, whose clock is not ours.
+    if (is_early && is_too_fast(forecast, report, *later.first)) rules_.clock = kUnlimited;
+    if (is_early && rules_.clock != kUnlimited && ++early_ == 1) {
+      return std::nullopt;  // the next report says whether that was a doubtful time
+    }
     if (rules_.clock == kUnlimited) found = later;
   }
   if (found.first) {
@@ -211,28 +216,38 @@ void PathFollower::move_to(PathForecast& forecast, const Fit& found, const PathR
     const PathPiece& candidate = pieces[static_cast<std::size_t>(number - forecast.first_piece())];
     if (candidate.line_number == *report.line_number) line_by_number_ = candidate.file_line;
   }
-  note_time(report);
-  reported_mm_ = report.machine_mm;
+  note(report);
   has_report_ = true;
 }
 
-void PathFollower::note_time(const PathReport& report) {
+void PathFollower::note(const PathReport& report) {
   if (report.asked) made_after_ = std::max(made_after_, *report.asked);
+  reported_mm_ = report.machine_mm;
 }
 
 PathFollower::Fit PathFollower::fit_with_any_offset(const PathForecast& forecast, PathReport& report,
                                                     double limit) const {
   const AxisValues told = report.machine_mm;
-  Fit nearest = fit(forecast, told, limit);
-  if (nearest.first || !report.work_mm) return nearest;
+  Fit result = fit(forecast, told, limit);
+  if (!report.work_mm) return result;
+  const auto is_before = [](const Place& left, const Place& right) {
+    return left.piece != right.piece ? left.piece < right.piece : left.part < right.part;
+  };
   for (const auto& offset : forecast.work_offsets()) {
-    for (std::size_t axis = 0; axis < report.axes; ++axis) {
-      report.machine_mm[axis] = (*report.work_mm)[axis] + offset.mm[axis];
+    AxisValues at = told;
+    for (std::size_t axis = 0; axis < report.axes; ++axis) at[axis] = (*report.work_mm)[axis] + offset.mm[axis];
+    const Fit other = fit(forecast, at, limit);
+    if (!other.first) continue;
+    if (!result.first) {
+      result = other;
+      report.machine_mm = at;
+      continue;
     }
-    if (Fit found = fit(forecast, report.machine_mm, limit); found.first) return found;
+    // The report may mean either place.
+    if (is_before(*other.first, *result.first)) result.first = other.first;
+    if (is_before(result.last, other.last)) result.last = other.last;
   }
-  report.machine_mm = told;
-  return nearest;
+  return result;
 }
 
 bool PathFollower::is_possible(const PathForecast& forecast, const PathReport& report) const {
@@ -248,16 +263,27 @@ bool PathFollower::is_possible(const PathForecast& forecast, const PathReport& r
   return true;
 }
 
-bool PathFollower::is_too_fast(const PathForecast& forecast, const PathReport& report) const {
+bool PathFollower::is_too_fast(const PathForecast& forecast, const PathReport& report, const Place& to) const {
   constexpr double kMinute = 60.0;
   constexpr double kClearly = 1.2;
-  const double time_s = base::to_seconds(report.arrived - made_after_) * rules_.clock;
+  const auto& pieces = forecast.pieces();
+  double feed_mm_per_min = 0;
+  bool is_rapid = false;
+  for (std::uint64_t number = std::max(first_.piece, forecast.first_piece()); number <= to.piece; ++number) {
+    const PathPiece& piece = pieces[static_cast<std::size_t>(number - forecast.first_piece())];
+    const auto programmed = static_cast<double>(piece.feed_mm_per_min);
+    feed_mm_per_min = std::max(feed_mm_per_min, programmed * report.feed_override / kPercent);
+    is_rapid = is_rapid || (programmed == 0 && piece.least_s > 0);
+  }
+  const double time_min = base::to_seconds(report.arrived - made_after_) * rules_.clock / kMinute;
+  double square = 0;
   for (std::size_t axis = 0; axis < report.axes; ++axis) {
     const auto rate = static_cast<double>(forecast.rules().settings.max_rate_mm_per_min[axis]);
     const double way = std::abs(static_cast<double>(report.machine_mm[axis] - reported_mm_[axis]));
-    if (way > kClearly * rate / kMinute * time_s + rules_.tolerance_mm) return true;
+    if (way > kClearly * rate * time_min + rules_.tolerance_mm) return true;
+    square += way * way;
   }
-  return false;
+  return !is_rapid && std::sqrt(square) > kClearly * feed_mm_per_min * time_min + rules_.tolerance_mm;
 }
 
 PathDeparture PathFollower::departure(const PathForecast& forecast, const PathReport& report, const Fit& best) const {
@@ -278,6 +304,39 @@ PathDeparture PathFollower::departure(const PathForecast& forecast, const PathRe
   return result;
 }
 
+std::uint64_t PathFollower::last_prepared(const PathForecast& forecast, int feed_override) const {
+  constexpr double kMinute = 60.0;
+  // A segment is longer where it would hold less than a step (motion.md 1.3).
+  constexpr double kStepsOfSegment = 2.0;
+  const auto& pieces = forecast.pieces();
+  const motion::MotionSettings& settings = forecast.rules().settings;
+  double step_mm = 0;
+  double fastest_mm_per_s = 0;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(settings.axes); ++axis) {
+    const auto steps = static_cast<double>(settings.steps_per_mm[axis]);
+    if (steps > 0) step_mm = std::max(step_mm, 1 / steps);
+    fastest_mm_per_s = std::max(fastest_mm_per_s, static_cast<double>(settings.max_rate_mm_per_min[axis]) / kMinute);
+  }
+  double segments = forecast.rules().motion.segment_slots + 1;
+  std::uint64_t number = last_.piece;
+  double part = last_.part;
+  for (; number + 1 < forecast.first_piece() + pieces.size(); ++number, part = 0) {
+    const PathPiece& piece = pieces[static_cast<std::size_t>(number - forecast.first_piece())];
+    double square = 0;
+    for (std::size_t axis = 0; axis < piece.start_mm.size(); ++axis) {
+      const auto way = static_cast<double>(piece.end_mm[axis] - piece.start_mm[axis]);
+      square += way * way;
+    }
+    const double feed_mm_per_s = static_cast<double>(piece.feed_mm_per_min) / kMinute * feed_override / kPercent;
+    const double speed_mm_per_s = feed_mm_per_s > 0 ? feed_mm_per_s : fastest_mm_per_s;
+    const double segment_mm =
+        std::max(speed_mm_per_s * base::to_seconds(kSegmentTime), kStepsOfSegment * std::max(step_mm, kLastDigitMm));
+    segments -= std::sqrt(square) * (1 - part) / segment_mm;
+    if (segments < 0) break;
+  }
+  return number;
+}
+
 std::optional<PathDeparture> PathFollower::check_speeds(const PathForecast& forecast, const PathReport& report) {
   if (report.feed_override != feed_override_ || report.spindle_override != spindle_override_) {
     feed_override_ = report.feed_override;
@@ -292,7 +351,8 @@ std::optional<PathDeparture> PathFollower::check_speeds(const PathForecast& fore
   PathDeparture strange{.file_line = forecast.pieces().front().file_line};
   double most_feed = 0;
   bool spindle_fits = !report.spindle_rpm;
-  for (std::uint64_t number = first_.piece; number <= last_.piece; ++number) {
+  const std::uint64_t prepared = last_prepared(forecast, report.feed_override);
+  for (std::uint64_t number = first_.piece; number <= prepared; ++number) {
     const PathPiece& piece = forecast.pieces()[static_cast<std::size_t>(number - forecast.first_piece())];
     const bool has_feed = piece.feed_mm_per_min > 0;
     most_feed = std::max(most_feed, has_feed ? static_cast<double>(piece.feed_mm_per_min) : kUnlimited);
@@ -306,7 +366,8 @@ std::optional<PathDeparture> PathFollower::check_speeds(const PathForecast& fore
     strange.expected_value = rpm;
   }
   const double allowed = most_feed * report.feed_override / kPercent;
-  const bool feed_fits = !report.feed_mm_per_min || *report.feed_mm_per_min <= allowed * kFeedTolerance + kFeedSlack;
+  const double slack = kFeedSlack + (rules_.reports_inches ? kHalfInchMm : 0);
+  const bool feed_fits = !report.feed_mm_per_min || *report.feed_mm_per_min <= allowed * kFeedTolerance + slack;
   if (feed_fits && spindle_fits) {
     strange_speeds_ = 0;
     return std::nullopt;

@@ -68,6 +68,8 @@ struct FollowerRules {
   double tolerance_mm = 0;
   /// Seconds of the machine's clock in one of ours.
   double clock = 1.0;
+  /// Feeds are printed in whole inches.
+  bool reports_inches = false;
   /// `$31` and `$30`; 0 where unknown.
   double least_rpm = 0;
   double most_rpm = 0;
@@ -111,12 +113,16 @@ class PathFollower {
   [[nodiscard]] double limit_s(const PathReport& report) const;
   [[nodiscard]] Fit fit_with_any_offset(const PathForecast& forecast, PathReport& report, double limit) const;
   [[nodiscard]] bool is_possible(const PathForecast& forecast, const PathReport& report) const;
-  /// Its axes moved clearly faster than `$110`.. allow, by our clock.
-  [[nodiscard]] bool is_too_fast(const PathForecast& forecast, const PathReport& report) const;
+  /// Since the last report it moved clearly faster than `$110`.. and the feeds of the path up to `to` allow, by our
+  /// clock. Where lines were lost it moves at their speed.
+  [[nodiscard]] bool is_too_fast(const PathForecast& forecast, const PathReport& report, const Place& to) const;
+  /// The last piece of which the controller may tell the speed: it tells that of the motion that it has prepared, which
+  /// is ahead of the position (gnea/grbl stepper.c st_get_realtime_rate).
+  [[nodiscard]] std::uint64_t last_prepared(const PathForecast& forecast, int feed_override) const;
   [[nodiscard]] std::optional<PathDeparture> check_speeds(const PathForecast& forecast, const PathReport& report);
   [[nodiscard]] PathDeparture departure(const PathForecast& forecast, const PathReport& report, const Fit& best) const;
   void move_to(PathForecast& forecast, const Fit& found, const PathReport& report);
-  void note_time(const PathReport& report);
+  void note(const PathReport& report);
 
   FollowerRules rules_;
   Place first_;

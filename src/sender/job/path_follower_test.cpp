@@ -94,6 +94,23 @@ TEST_F(Follower, LearnsItFromTheVeryFirstReports) {
   EXPECT_FALSE(report(90, 100, 0, 30ms));
 }
 
+TEST_F(Follower, LearnsItFromAFeedThatIsFarBelowTheFastest) {
+  send({"G1X0.1F300", "X0", "X0.1", "X0", "X200"});
+  EXPECT_FALSE(report(0, 0));
+  // 0.5 mm in our tenth of a second, and the machine does four times as much.
+  for (int i = 1; i < 40; ++i) EXPECT_FALSE(report(2.0F * static_cast<float>(i), 0)) << i;
+}
+
+TEST_F(Follower, TakesALostLineForNoSimulator) {
+  send({"G1X5F300", "G1X-5", "G1X40"});
+  EXPECT_FALSE(report(4.9F, 0, 0, 1s));
+  // The second line never came.
+  EXPECT_FALSE(report(5.3F, 0));
+  const auto departure = report(5.8F, 0);
+  ASSERT_TRUE(departure);
+  EXPECT_EQ(departure->kind, DepartureKind::Time);
+}
+
 TEST_F(Follower, NeverGoesBack) {
   send({"G1X10F1200"});
   EXPECT_FALSE(report(5, 0, 0, 300ms));
@@ -136,6 +153,14 @@ TEST_F(Follower, HoldsAgainstAFeedThatNobodyAskedFor) {
   EXPECT_THAT(describe(*departure), HasSubstr("900 mm/min where line 1 allows 600 mm/min"));
 }
 
+TEST_F(Follower, KnowsThatSpeedsAreToldAheadOfPositions) {
+  send({"G1X10F60", "G1X20F1500"});
+  report_.feed_mm_per_min = 60;
+  EXPECT_FALSE(report(9.89F, 0, 0, 10s));
+  report_.feed_mm_per_min = 1500;
+  for (int i = 0; i < 4; ++i) EXPECT_FALSE(report(9.95F + 0.01F * static_cast<float>(i), 0, 0, 20ms));
+}
+
 TEST_F(Follower, KnowsOverrides) {
   send({"G1X100F600"});
   EXPECT_FALSE(report(0, 0, 0, 3s));
@@ -155,6 +180,20 @@ TEST_F(Follower, HoldsAgainstAnotherSpindleSpeed) {
   const auto departure = report(7, 0);
   ASSERT_TRUE(departure);
   EXPECT_EQ(departure->kind, DepartureKind::Spindle);
+}
+
+TEST_F(Follower, DoesNotChooseBetweenOldAndNewWorkOffsets) {
+  send({"G1Z5F1500", "G1Z-5", "G43.1Z0.6", "G49", "G1Z5"});
+  report_.work_mm = AxisValues{0, 0, 5};
+  EXPECT_FALSE(report(0, 0, 5, 1s));
+  // Told with the old offset, counted with the new one: both lie on the way.
+  for (int i = 1; i < 18; ++i) {
+    const float z = 5 - 0.5F * static_cast<float>(i);
+    report_.work_mm = AxisValues{0, 0, z - 0.6F};
+    EXPECT_FALSE(report(0, 0, z - 0.6F)) << i;
+  }
+  report_.work_mm = AxisValues{0, 0, -5.6F};
+  EXPECT_FALSE(report(0, 0, -5.6F, 300ms));
 }
 
 TEST_F(Follower, WaitsForTheReportOfANewWorkOffset) {

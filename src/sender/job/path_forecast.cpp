@@ -1,6 +1,7 @@
 #include "sender/job/path_forecast.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -171,6 +172,7 @@ std::optional<std::string_view> PathForecast::read(SentLine& line, std::string_v
   for (std::size_t index = 0; index < actions_.size(); ++index) {
     line.waits_for_motion = line.waits_for_motion || waits_for_motion(actions_[index]);
     if (const auto reason = add(actions_[index], index, line)) return reason;
+    if (reader_->state().modal.canned_cycle) add_strokes_by_chance(index, line.file_line);
   }
   if (shadow_ && shadow_->state() == reader_->state() && shadow_->offsets() == reader_->offsets()) shadow_.reset();
   note_work_offset();
@@ -305,6 +307,28 @@ std::optional<std::string_view> PathForecast::add_arc(const gcode::ArcMove& move
     add_line(*end, feed, file_line, unknown);
   }
   return std::nullopt;
+}
+
+void PathForecast::add_strokes_by_chance(std::size_t index, std::uint32_t file_line) {
+  // The last moves up to this one, latest first.
+  std::array<const gcode::LinearMove*, 3> moves{};
+  std::size_t found = 0;
+  for (std::size_t at = index + 1; at-- > 0 && found < moves.size();) {
+    if (const auto* const move = std::get_if<gcode::LinearMove>(&actions_[at])) moves.at(found++) = move;
+  }
+  if (moves[0] == nullptr || !std::holds_alternative<gcode::LinearMove>(actions_[index])) return;
+  const auto loosen = [&] {
+    PathPiece& piece = pieces_.back();
+    piece.least_s = 0;
+    reached_s_ = piece.reached_s;
+    blocks_ = piece.blocks = pieces_.size() > 1 ? pieces_[pieces_.size() - 2].blocks : 0;
+  };
+  if (moves[2] != nullptr && difference(moves[0]->target_mm, moves[2]->target_mm, kSeenAt) == 0) loosen();
+  if (moves[2] == nullptr || moves[1]->feed.rapid) return;
+  for (const auto* const move : {moves[1], moves[0]}) {
+    add_line(move->target_mm, move->feed, file_line, doubtful_at_);
+    loosen();
+  }
 }
 
 void PathForecast::add_pause(std::uint32_t file_line) {

@@ -109,6 +109,9 @@ class PathForecast {
   void add_line(const AxisValues& end_mm, const gcode::Feed& feed, std::uint32_t file_line, AxisMask unknown);
   [[nodiscard]] std::optional<std::string_view> add_arc(const gcode::ArcMove& move, std::uint32_t file_line,
                                                         AxisMask unknown);
+  /// Whether a hole is drilled once more hangs on the last bit of offsets that are told with three digits
+  /// (gcode/act_cycle.cpp): behind the move of a drilling cycle at `index` a second stroke may come, or not.
+  void add_strokes_by_chance(std::size_t index, std::uint32_t file_line);
   void add_pause(std::uint32_t file_line);
   void begin_doubt(const AxisValues& from_mm, bool offsets_too);
   [[nodiscard]] AxisMask doubt_about(std::size_t index) const;

@@ -56,6 +56,21 @@ TEST_F(Forecast, CutsArcsLikeTheFirmware) {
   for (const PathPiece& piece : forecast_.pieces()) EXPECT_LE(std::abs(piece.end_mm[1]), 10.001F);
 }
 
+TEST_F(Forecast, AllowsAHoleToBeDrilledOnceMore) {
+  begin(Firmware::GrblHal);
+  send("G0Z5");
+  send("G98G81X10Z-2R1F600");
+  const auto& pieces = forecast_.pieces();
+  // Rest, up, across, down to R, stroke, back, and those two again.
+  ASSERT_EQ(pieces.size(), 8U);
+  EXPECT_FLOAT_EQ(pieces[4].end_mm[2], -2);
+  EXPECT_GT(pieces[4].least_s, 0);
+  EXPECT_FLOAT_EQ(pieces[6].end_mm[2], -2);
+  EXPECT_FLOAT_EQ(pieces[7].end_mm[2], 5);
+  EXPECT_EQ(pieces[6].least_s + pieces[7].least_s, 0);
+  EXPECT_EQ(pieces[7].blocks, pieces[5].blocks);
+}
+
 TEST_F(Forecast, OpensAtWhatItCannotFollow) {
   for (const std::string_view text : {"#1=5", "G1X[1+2]F100", "$H", "$100=80", "O100 CALL", "G1X1X2"}) {
     begin();

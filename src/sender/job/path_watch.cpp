@@ -54,6 +54,7 @@ void PathWatch::begin(Instant now, const std::optional<gcode::Interpreter>& read
   follower_.begin(now, start,
                   {.tolerance_mm = tolerance_mm(rules, number(known, "13", 0) != 0),
                    .clock = clock,
+                   .reports_inches = number(known, "13", 0) != 0,
                    .least_rpm = number(known, "31", 0),
                    .most_rpm = number(known, "30", 0)});
 }
