@@ -113,7 +113,8 @@ void add_run(CLI::App& kerf, Chosen& chosen) {
       command
           ->add_option("--from-line", options->start.from_line,
                        "Begin at this line, in the state that the lines before it leave, after a safe way there")
-          ->type_name("N");
+          ->type_name("N")
+          ->check(CLI::PositiveNumber);
   add_job_options(*command, options->job);
   add_choices(*command, options->start, from_line);
   command->footer(
@@ -130,7 +131,9 @@ void add_resume(CLI::App& kerf, Chosen& chosen) {
   command->add_option("--file", options->file, "The program, where it is not where it was")->type_name("FILE");
   add_machine(*command, options->machine, options->recording);
   add_journal(*command, options->recording.journal);
-  command->add_option("--from-line", options->choices.from_line, "Go on from this line instead")->type_name("N");
+  command->add_option("--from-line", options->choices.from_line, "Go on from this line instead")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
   add_job_options(*command, options->how);
   add_choices(*command, options->choices, nullptr);
   command->add_flag("--json", options->json, "Print the plan and events as JSON");

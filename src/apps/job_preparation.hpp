@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/exit_status.hpp"
+#include "io/json.hpp"
 #include "sender/session/command.hpp"
 #include "sender/session/session.hpp"
 
@@ -13,18 +14,23 @@ namespace kerf::apps {
 
 /// Nothing to do before the machine tells more.
 struct KeepWaiting {};
+/// What is shown before a question, a job or an end: lines for people, and the same as one JSON event (null: none).
+struct Told {
+  std::vector<std::string> lines{};
+  io::Json event{};
+};
 /// A question whose answer is yes or no; `told` is shown before it.
 struct AskOperator {
-  std::vector<std::string> told{};
+  Told told{};
   std::string question;
 };
 struct BeginJob {
-  std::vector<std::string> told{};
+  Told told{};
   session::StartJob job;
 };
 /// There will be no job; the exit status says whether that is a failure.
 struct NoJob {
-  std::vector<std::string> told{};
+  Told told{};
   std::string sentence{};
   ExitStatus status = ExitStatus::Usage;
 };
@@ -37,8 +43,10 @@ class JobPreparation {
   JobPreparation& operator=(const JobPreparation&) = delete;
   virtual ~JobPreparation() = default;
 
-  /// Asked whenever the machine has told something.
-  [[nodiscard]] virtual NextInPreparation next(const session::Session& session) = 0;
+  /// Told of everything that the session tells.
+  virtual void on_event(const session::Event& event) = 0;
+  /// Asked whenever the machine has told something, and now and then where it is silent.
+  [[nodiscard]] virtual NextInPreparation next(Instant now, const session::Session& session) = 0;
   /// The operator said yes to the last question.
   virtual void agree() = 0;
 };

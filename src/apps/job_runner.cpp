@@ -17,6 +17,8 @@ using namespace std::chrono_literals;
 
 /// The clock of the progress display runs on between two reports.
 constexpr Duration kRedraw = 250ms;
+/// No desktop suspends a computer sooner by default.
+constexpr double kSoonestSleepS = 600;
 
 constexpr std::string_view kLinePrompt = "For the machine ($J= jogs, G10, G43.1, $TPW; Enter sends, Esc leaves): ";
 constexpr char kEscape = '\x1b';
@@ -119,46 +121,54 @@ ExitStatus JobRunner::run(const io::RecordingOptions& recording) {
 void JobRunner::on_event(const session::Event& event) {
   if (status_) return;
   std::visit([this](const auto& alternative) { on(alternative); }, event);
-  if (is_preparing_ && !status_) go_on_preparing();
+  if (!is_preparing_ || status_) return;
+  preparation_->on_event(event);
+  go_on_preparing();
 }
 
 void JobRunner::go_on_preparing() {
-  std::visit([this](const auto& next) { follow(next); }, preparation_->next(host_->session()));
+  std::visit([this](const auto& next) { follow(next); }, preparation_->next(loop_.now(), host_->session()));
+  if (!is_preparing_ || status_) return;
+  redraw_.arm(loop_.now() + kRedraw, [this] {
+    if (is_preparing_ && !status_) go_on_preparing();
+  });
 }
 
 void JobRunner::follow(const KeepWaiting&) {}
 
 void JobRunner::follow(const session::Command& command) {
+  if (std::holds_alternative<session::Home>(command)) view_.noted("Homing.");
   host_->submit(command);
 }
 
 void JobRunner::follow(const AskOperator& question) {
-  for (const std::string& line : question.told) fmt::print("{}\n", line);
+  view_.told(question.told);
   if (!can_ask_) return fail("There is no terminal to ask on: say --yes.", ExitStatus::Usage);
   awaits_answer_ = true;
   view_.asked(job::JobState{}, question.question);
 }
 
 void JobRunner::follow(const BeginJob& begin) {
-  for (const std::string& line : begin.told) fmt::print("{}\n", line);
+  view_.told(begin.told);
   is_preparing_ = false;
   program_ = begin.job.program;
   if (program_ == nullptr) return fail("The rest of the program cannot be sent.", ExitStatus::Usage);
   session::StartJob job = begin.job;
   job.options = options_;
+  job.timeline = rehearse(*program_, host_->session().capabilities(), clock_speed(url_));
   host_->submit(job);
 }
 
 void JobRunner::follow(const NoJob& none) {
   is_preparing_ = false;
-  for (const std::string& line : none.told) fmt::print("{}\n", line);
+  view_.told(none.told);
   if (none.status == ExitStatus::Done) return finish(none.status);
   fail(none.sentence, none.status);
 }
 
 void JobRunner::answer(char key) {
   awaits_answer_ = false;
-  if (key != 'y' && key != 'Y') return fail("Not confirmed: nothing was sent.", ExitStatus::Interrupted);
+  if (key != 'y' && key != 'Y') return fail("Not confirmed: no line was sent.", ExitStatus::Interrupted);
   preparation_->agree();
   go_on_preparing();
 }
@@ -215,13 +225,19 @@ void JobRunner::look_after_power() {
   if (std::holds_alternative<io::VirtualAddress>(url_)) return;
   for (const std::string& warning : io::power_warnings(url_)) view_.noted(warning);
   awake_ = std::make_unique<io::SleepInhibitor>(loop_, "A job runs on " + io::to_string(url_),
-                                                [this](const std::string& sentence) {
-                                                  if (!status_) view_.noted(sentence);
-                                                });
+                                                [this](const std::string& sentence) { sleep_warning_ = sentence; });
+}
+
+void JobRunner::warn_of_sleep(const job::Progress& progress) {
+  // What is left is known from a rehearsal only.
+  const double known_s = progress.elapsed_s + (progress.cutting_line ? progress.remaining_s.value_or(0) : 0);
+  if (sleep_warning_.empty() || known_s < kSoonestSleepS) return;
+  view_.noted(std::exchange(sleep_warning_, {}));
 }
 
 void JobRunner::on(const session::JobProgressed& progressed) {
   ask_if_held(progressed.job);
+  warn_of_sleep(progressed.job.progress);
   view_.progressed(progressed.job, host_->session().snapshot());
   redraw_.arm(loop_.now() + kRedraw, [this] {
     if (const auto& job = host_->session().job(); job && !status_) on(session::JobProgressed{*job});

@@ -51,6 +51,7 @@ class JobRunner {
   void fail(std::string_view sentence, ExitStatus status);
   void finish(ExitStatus status);
   void look_after_power();
+  void warn_of_sleep(const job::Progress& progress);
 
   void on(const session::ControllerFound& found);
   void on(const session::ControllerReset& reset);
@@ -92,6 +93,8 @@ class JobRunner {
   bool is_started_ = false;
   io::Timer redraw_;
   std::unique_ptr<io::SleepInhibitor> awake_;
+  /// Nobody keeps this computer awake, which matters to long jobs only.
+  std::string sleep_warning_;
   std::unique_ptr<KeyReader> keys_;
   std::unique_ptr<io::SignalWatch> signals_;
   std::unique_ptr<io::SessionHost> host_;

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "apps/commands.hpp"
 #include "apps/output.hpp"
@@ -58,6 +60,9 @@ class TerminalView final : public JobView {
  public:
   ~TerminalView() override { erase(); }
 
+  void told(const Told& told) override {
+    for (const std::string& text : told.lines) line(text);
+  }
   void found(std::string_view sentence, const machine::Capabilities&) override { line(sentence); }
   void noted(std::string_view sentence) override { line(sentence); }
   void machine_said(std::string_view text) override { line(fmt::format("The machine says: {}", text)); }
@@ -81,6 +86,13 @@ class TerminalView final : public JobView {
   void line_refused(const session::LineRefused& refused) override { line(refused.explanation.headline); }
   void asked(const job::JobState&, std::string_view question) override {
     erase();
+    if (rows_.empty()) {
+      // Before there is a job: nothing is drawn above it.
+      put("{}", question);
+      std::fflush(stdout);
+      is_open_question_ = true;
+      return;
+    }
     question_ = question;
     draw();
   }
@@ -125,6 +137,7 @@ class TerminalView final : public JobView {
   }
 
   void erase() {
+    if (std::exchange(is_open_question_, false)) put("\n");
     if (is_drawn_) put("{}\x1b[J", kTwoRowsUp);
     is_drawn_ = false;
     std::fflush(stdout);
@@ -137,10 +150,14 @@ class TerminalView final : public JobView {
   std::string rows_;
   std::string question_;
   bool is_drawn_ = false;
+  bool is_open_question_ = false;
 };
 
 class LineView final : public JobView {
  public:
+  void told(const Told& told) override {
+    for (const std::string& text : told.lines) line(text);
+  }
   void found(std::string_view sentence, const machine::Capabilities&) override { line(sentence); }
   void noted(std::string_view sentence) override { line(sentence); }
   void machine_said(std::string_view text) override { line(fmt::format("The machine says: {}", text)); }
@@ -188,6 +205,9 @@ class LineView final : public JobView {
 
 class JsonView final : public JobView {
  public:
+  void told(const Told& told) override {
+    if (!told.event.is_null()) emit(told.event);
+  }
   void found(std::string_view sentence, const machine::Capabilities& capabilities) override {
     emit({{"event", "found"},
           {"sentence", sentence},
@@ -318,6 +338,11 @@ std::unique_ptr<JobView> make_line_view() {
 }
 std::unique_ptr<JobView> make_json_view() {
   return std::make_unique<JsonView>();
+}
+
+std::unique_ptr<JobView> make_view(bool json) {
+  if (json) return make_json_view();
+  return is_terminal(STDOUT_FILENO) ? make_terminal_view() : make_line_view();
 }
 
 }  // namespace kerf::apps

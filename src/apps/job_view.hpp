@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "apps/exit_status.hpp"
+#include "apps/job_preparation.hpp"
 #include "sender/job/job_state.hpp"
 #include "sender/machine/capabilities.hpp"
 #include "sender/machine/snapshot.hpp"
@@ -20,6 +21,8 @@ class JobView {
   JobView(const JobView&) = delete;
   JobView& operator=(const JobView&) = delete;
 
+  /// What was found out before there is a job (a plan): lines for people, or one event for programs.
+  virtual void told(const Told& told) = 0;
   virtual void found(std::string_view sentence, const machine::Capabilities& capabilities) = 0;
   /// Something that the operator should know, in one sentence.
   virtual void noted(std::string_view sentence) = 0;
@@ -45,6 +48,8 @@ class JobView {
 [[nodiscard]] std::unique_ptr<JobView> make_line_view();
 /// One JSON object a line on standard output: {"event": …}.
 [[nodiscard]] std::unique_ptr<JobView> make_json_view();
+/// JSON if that is asked for, else what fits standard output.
+[[nodiscard]] std::unique_ptr<JobView> make_view(bool json);
 
 /// What happened, in one paragraph: how it ended, where, and what to do next.
 [[nodiscard]] std::string summary_of(const job::JobState& job, const machine::Snapshot& snapshot);

@@ -1,10 +1,13 @@
 // `kerf resume JOB` and `kerf run --from-line`: the job goes on in the middle of its program.
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <utility>
 #include <variant>
+#include <vector>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "apps/commands.hpp"
@@ -14,7 +17,7 @@
 #include "apps/terminal.hpp"
 #include "io/journal_database.hpp"
 #include "io/journal_store.hpp"
-#include "io/text_file.hpp"
+#include "io/program_file.hpp"
 
 namespace kerf::apps {
 namespace {
@@ -37,35 +40,66 @@ job::ResumeChoice choice_of(const ResumeChoices& choices) {
           .position_is_confirmed = choices.position_is_right};
 }
 
-Found<std::shared_ptr<const job::Program>> load(const std::string& file) {
-  auto text = io::read_text_file(file);
-  if (!text) return std::unexpected{io::explain(text.error(), file)};
-  auto program = job::Program::load(file, *std::move(text));
-  if (!program) return std::unexpected{job::describe(program.error(), file)};
-  return *std::move(program);
+/// The file of the program, which has the line from which it is to go on.
+Found<io::ProgramFile> load(const std::string& path, const ResumeChoices& choices) {
+  auto file = io::ProgramFile::load(path);
+  if (!file) return std::unexpected{io::explain(file.error(), path)};
+  const std::uint32_t lines = file->program()->line_count();
+  if (choices.from_line.value_or(1) > lines) {
+    return std::unexpected{fmt::format("{} has {} lines: there is no line {} to begin at. Choose one with --from-line.",
+                                       path, lines, *choices.from_line)};
+  }
+  return *std::move(file);
 }
 
 bool is_interrupted(const io::JournaledJob& job) {
   return !job.is_running && !job.history.begun.hash.empty() && job.history.outcome() != job::JobOutcome::Complete;
 }
 
+std::unexpected<std::string> unreadable(const io::JournalError& error) {
+  return std::unexpected{"The journal of jobs cannot be read: " + error.sentence + "."};
+}
+
+/// The job that continues job `number`; empty if none does.
+std::optional<std::int64_t> continued_by(const std::vector<io::JournaledJob>& jobs, std::int64_t number) {
+  // Newest first.
+  const auto next = std::ranges::find_if(jobs, [number](const io::JournaledJob& job) {
+    return job.history.begun.origin.continues == number && !job.history.begun.hash.empty();
+  });
+  return next == jobs.end() ? std::nullopt : std::optional{next->number};
+}
+
+/// Why this job cannot be resumed; empty if it can.
+std::string why_not(const io::JournaledJob& job, const std::vector<io::JournaledJob>& jobs) {
+  if (job.is_running) {
+    return fmt::format("Job {} is still running on {}: another Kerf has it. Stop it there first.", job.number,
+                       job.machine);
+  }
+  if (const auto next = continued_by(jobs, job.number)) {
+    return fmt::format("Job {} was gone on with as job {}: kerf resume {}.", job.number, *next, *next);
+  }
+  if (!is_interrupted(job)) {
+    return fmt::format("Job {} ({}) ran to its end: there is nothing to resume. kerf run cuts it again.", job.number,
+                       job.history.begun.program);
+  }
+  return {};
+}
+
 Found<io::JournaledJob> find_job(const io::JournalDatabase& journal, std::optional<std::int64_t> number) {
-  if (number) {
-    auto job = journal.job(*number);
-    if (!job) return std::unexpected{"The journal of jobs cannot be read: " + job.error().sentence + "."};
-    if (!*job) return std::unexpected{"There is no job " + std::to_string(*number) + "; see kerf resume --list."};
-    if ((*job)->is_running) return std::unexpected{"Job " + std::to_string(*number) + " is running."};
-    return **std::move(job);
-  }
   auto jobs = journal.jobs();
-  if (!jobs) return std::unexpected{"The journal of jobs cannot be read: " + jobs.error().sentence + "."};
-  // Newest first. The newest job counts: one behind a complete job is history.
-  for (io::JournaledJob& job : *jobs) {
-    if (job.is_running || job.history.begun.hash.empty()) continue;
-    if (is_interrupted(job)) return std::move(job);
-    break;
+  if (!jobs) return unreadable(jobs.error());
+  // Newest first. Without a number the newest counts: one behind a complete job is history.
+  const auto found = std::ranges::find_if(*jobs, [number](const io::JournaledJob& job) {
+    return number ? job.number == *number : !job.is_running && !job.history.begun.hash.empty();
+  });
+  if (found == jobs->end()) {
+    return std::unexpected{
+        number ? fmt::format("There is no job {}: kerf resume --list shows those that can be resumed.", *number)
+               : std::string{"No job was interrupted: there is nothing to resume."}};
   }
-  return std::unexpected{std::string{"The last job was not interrupted; name another one (kerf resume --list)."}};
+  const std::string why = why_not(*found, *jobs);
+  if (why.empty()) return std::move(*found);
+  return std::unexpected{number ? why : why + " To resume an older one, name it (kerf resume --list)."};
 }
 
 /// The machine before the first line of the file: that of the first job of the chain.
@@ -82,27 +116,36 @@ Found<job::MachineAtStart> start_of(const io::JournalDatabase& journal, const jo
   return begun.machine;
 }
 
-ExitStatus carry_out(const std::string& machine, ResumeWish wish, const ResumeChoices& choices, const JobChoices& how,
-                     const io::RecordingOptions& recording) {
-  const auto url = io::parse_machine_url(machine);
-  if (!url) {
-    complain(io::explain(url.error()));
+/// What is the same for both commands.
+struct Circumstances {
+  const std::string& machine;
+  const ResumeChoices& choices;
+  const JobChoices& how;
+  const io::RecordingOptions& recording;
+  JobView& view;
+  bool json = false;
+
+  [[nodiscard]] ExitStatus refuse(const std::string& sentence) const {
+    view.failed(sentence, ExitStatus::Usage);
     return ExitStatus::Usage;
   }
+};
+
+ExitStatus carry_out(ResumeWish wish, const Circumstances& with) {
+  const ResumeChoices& choices = with.choices;
+  const auto url = io::parse_machine_url(with.machine);
+  if (!url) return with.refuse(io::explain(url.error()));
   // The fault campaign still finds plans that cut what they should not (`make campaign`).
   if (!std::holds_alternative<io::VirtualAddress>(*url) && !choices.dry_run && !choices.trial) {
-    complain(
+    return with.refuse(
         "Beginning in the middle of a program is on trial: in tests with faults one plan in fifty cut where it should "
         "not. Nothing was sent. --dry-run shows the plan; with --trial it moves the machine: then keep a hand on the "
         "emergency stop, above the work first.");
-    return ExitStatus::Usage;
   }
-  const bool on_terminal = is_terminal(STDOUT_FILENO);
-  const bool can_ask = !wish.json && is_terminal(STDIN_FILENO) && on_terminal;
-  const auto view = wish.json ? make_json_view() : on_terminal ? make_terminal_view() : make_line_view();
+  const bool can_ask = !with.json && is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO);
   io::EventLoop loop;
-  JobRunner runner(loop, *url, prepare_resume(std::move(wish)), how.settled(can_ask), *view, can_ask);
-  return runner.run(recording);
+  JobRunner runner(loop, *url, prepare_resume(std::move(wish)), with.how.settled(can_ask), with.view, can_ask);
+  return runner.run(with.recording);
 }
 
 std::string absolute(const std::string& file) {
@@ -113,20 +156,35 @@ std::string absolute(const std::string& file) {
 }  // namespace
 
 ExitStatus resume_job(const ResumeOptions& options) {
-  const auto refuse = [](const std::string& sentence) {
-    complain(sentence);
+  const auto view = make_view(options.json);
+  const auto refuse = [&view](const std::string& sentence) {
+    view->failed(sentence, ExitStatus::Usage);
     return ExitStatus::Usage;
   };
   const std::string path = io::journal_path(options.recording.journal);
-  if (path.empty() || !std::filesystem::exists(path)) return refuse("There is no journal of jobs.");
+  if (path.empty() || !std::filesystem::exists(path)) {
+    return refuse(
+        fmt::format("No job was ever written down{}: there is nothing to resume.", path.empty() ? "" : " in " + path));
+  }
   const auto journal = io::JournalDatabase::open_to_read(path);
   if (!journal) return refuse("The journal of jobs cannot be read: " + journal.error().sentence + ".");
   auto found = find_job(*journal, options.job);
   if (!found) return refuse(found.error());
   const std::string file = options.file.empty() ? found->history.begun.origin.path : options.file;
-  if (file.empty()) return refuse("The job came from no file; say where its program is with --file.");
-  auto program = load(file);
-  if (!program) return refuse(program.error());
+  if (file.empty()) {
+    return refuse(fmt::format("Job {} came from no file: say where its program is with --file.", found->number));
+  }
+  auto program = load(file, options.choices);
+  if (!program)
+    return refuse(program.error() + (options.file.empty() ? " If it is elsewhere now, name it with --file." : ""));
+  const job::JobBegun& begun = found->history.begun;
+  const std::string& then = begun.origin.file_hash.empty() ? begun.hash : begun.origin.file_hash;
+  if (program->program()->hash() != then) {
+    return refuse(fmt::format(
+        "{} is not the file that job {} cut: its content has changed since. Put the old one back, or name it with "
+        "--file. To cut the new one from some line on: kerf run FILE --from-line N.",
+        file, found->number));
+  }
   auto start = start_of(*journal, found->history);
   if (!start) return refuse(start.error());
   const std::string machine = options.machine.empty() ? found->machine : options.machine;
@@ -137,24 +195,24 @@ ExitStatus resume_job(const ResumeOptions& options) {
                                           .file_start = *std::move(start)},
                   .choice = choice_of(options.choices),
                   .dry_run = options.choices.dry_run,
-                  .says_yes = options.choices.yes,
-                  .json = options.json};
-  return carry_out(machine, std::move(wish), options.choices, options.how, options.recording);
+                  .says_yes = options.choices.yes};
+  return carry_out(std::move(wish), {machine, options.choices, options.how, options.recording, *view, options.json});
 }
 
 ExitStatus run_from_line(const RunOptions& options) {
-  auto program = load(options.file);
+  const auto view = make_view(options.json);
+  auto program = load(options.file, options.start);
   if (!program) {
-    complain(program.error());
+    view->failed(program.error(), ExitStatus::Usage);
     return ExitStatus::Usage;
   }
   ResumeWish wish{.file = *std::move(program),
                   .path = absolute(options.file),
                   .choice = choice_of(options.start),
                   .dry_run = options.start.dry_run,
-                  .says_yes = options.start.yes,
-                  .json = options.json};
-  return carry_out(options.machine, std::move(wish), options.start, options.job, options.recording);
+                  .says_yes = options.start.yes};
+  return carry_out(std::move(wish),
+                   {options.machine, options.start, options.job, options.recording, *view, options.json});
 }
 
 }  // namespace kerf::apps

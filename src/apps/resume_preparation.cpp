@@ -1,7 +1,10 @@
 #include "apps/resume_preparation.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
+#include "apps/homing_wait.hpp"
 #include "io/json.hpp"
 #include "sender/job/resume_facts.hpp"
 #include "sender/machine/explanation_evidence.hpp"
@@ -10,31 +13,59 @@
 namespace kerf::apps {
 namespace {
 
+using namespace std::chrono_literals;
 using vocabulary::MachineState;
 
 constexpr int kHoming = 22;
+/// Modes and offsets are told at once, or never.
+constexpr Duration kLongestAnswer = 10s;
 
 bool can_be_homed(const session::Session& session) {
   return (static_cast<int>(machine::setting_number(session.capabilities(), kHoming).value_or(0)) & 1) != 0;
+}
+
+/// Why it will not come to rest by itself, and what to do about it; null where it will.
+const char* why_never_at_rest(MachineState state) {
+  switch (state) {
+    case MachineState::Alarm:
+      return "The machine is in alarm: kerf status says why. Clear it in kerf console ($X), see that the tool is where "
+             "the machine says, then resume again.";
+    case MachineState::Hold:
+      return "The machine is held, with lines of before still in it. Reset it while it stands (Ctrl-X in kerf "
+             "console): it keeps its position. Then resume again.";
+    case MachineState::Door:
+      return "The safety door is open, or the machine waits behind it. Close it and reset the machine (Ctrl-X in kerf "
+             "console), then resume again.";
+    case MachineState::Tool:
+      return "The machine waits for a tool change of before. Reset it (Ctrl-X in kerf console), put in the tool that "
+             "the plan names, then resume again.";
+    case MachineState::Check:
+      return "The machine is in check mode, where nothing moves. Leave it ($C in kerf console), then resume again.";
+    case MachineState::Sleep: return "The machine sleeps. Reset it (Ctrl-X in kerf console), then resume again.";
+    default: return nullptr;
+  }
 }
 
 class ResumePreparation final : public JobPreparation {
  public:
   explicit ResumePreparation(ResumeWish wish) : wish_(std::move(wish)) {}
 
-  NextInPreparation next(const session::Session& session) override {
-    const machine::Snapshot& now = session.snapshot();
+  void on_event(const session::Event& event) override { homing_.on_event(event); }
+
+  NextInPreparation next(Instant at, const session::Session& session) override {
     if (asked_ != Question::None) return KeepWaiting{};
+    if (homing_.has_begun() && !is_homed_) return follow_homing(at, session);
+    const machine::Snapshot& now = session.snapshot();
     const bool needs_home = can_be_homed(session) && !wish_.choice.position_is_confirmed && !is_homed_ &&
                             (wish_.work || !now.homing.all.value_or(false));
-    if (needs_home && !wish_.dry_run) return home(now);
-    const bool is_at_rest = now.state == MachineState::Idle || (wish_.dry_run && now.state == MachineState::Alarm);
-    if (!is_at_rest) {
-      if (now.state == MachineState::Alarm) return give_up({}, "The machine is in alarm: clear it first.");
+    const bool may_be_in_alarm = now.state == MachineState::Alarm && needs_home;
+    if (now.state != MachineState::Idle && !may_be_in_alarm) {
+      if (const char* why = why_never_at_rest(now.state); why != nullptr) return give_up({}, why);
       return KeepWaiting{};
     }
-    if (const char* question = what_to_ask(now); question != nullptr) return ask_machine(question);
-    return plan(session, needs_home);
+    if (const char* question = what_to_ask(now); question != nullptr) return ask_machine(at, question);
+    last_asked_.clear();
+    return plan(at, session, needs_home);
   }
 
   void agree() override {
@@ -46,22 +77,30 @@ class ResumePreparation final : public JobPreparation {
  private:
   enum class Question { None, Home, Run };
 
-  NextInPreparation home(const machine::Snapshot& now) {
-    if (is_homing_) {
-      if (now.state == MachineState::Home || now.reports == reports_at_home_) return KeepWaiting{};
-      if (now.state != MachineState::Idle || !now.homing.all.value_or(false)) return KeepWaiting{};
-      is_homed_ = true;
-      return session::Command{session::SendLine{"$#"}};
-    }
+  NextInPreparation home(Instant at, const machine::Snapshot& now, const job::ResumePlan& made) {
     if (!may_home_ && !wish_.says_yes) {
       asked_ = Question::Home;
       return AskOperator{
-          .told = {"The machine is homed first, so that its position is known: Z goes up before all else."},
+          .told = {.lines = {"Job and machine fit; it can go on from line " + std::to_string(made.from_line) + ".",
+                             "First the machine is homed, so that its position is certain. It moves now: Z goes up "
+                             "before all else. Is the way to the switches free?"}},
           .question = "Home now? [y/N] "};
     }
-    is_homing_ = true;
-    reports_at_home_ = now.reports;
+    homing_.begin(at, now);
     return session::Command{session::Home{}};
+  }
+
+  NextInPreparation follow_homing(Instant at, const session::Session& session) {
+    switch (homing_.look(at, session.snapshot())) {
+      case HomingWait::Verdict::Waiting: return KeepWaiting{};
+      case HomingWait::Verdict::Homed: break;
+      case HomingWait::Verdict::Failed:
+        return give_up({}, homing_.sentence() +
+                               " No line of the job was sent. Home the machine (kerf console, $H), then resume again; "
+                               "or, if its position is right all the same, say --position-is-right.");
+    }
+    is_homed_ = true;
+    return session::Command{session::SendLine{"$#"}};
   }
 
   /// What is missing for a plan; each is asked once, and then waited for.
@@ -71,74 +110,98 @@ class ResumePreparation final : public JobPreparation {
     return nullptr;
   }
 
-  NextInPreparation ask_machine(std::string_view line) {
-    if (last_asked_ == line) return KeepWaiting{};
-    last_asked_ = line;
-    return session::Command{session::SendLine{std::string{line}}};
+  NextInPreparation ask_machine(Instant at, std::string_view line) {
+    if (last_asked_ != line) {
+      last_asked_ = line;
+      asked_at_ = at;
+      return session::Command{session::SendLine{std::string{line}}};
+    }
+    if (at - asked_at_ < kLongestAnswer) return KeepWaiting{};
+    return give_up({}, "The machine did not answer " + last_asked_ +
+                           " within 10 s, so its modes and offsets are not known. Look at it with kerf status, then "
+                           "resume again.");
   }
 
-  NextInPreparation give_up(std::vector<std::string> told, std::string sentence) const {
+  NextInPreparation give_up(Told told, std::string sentence) const {
     return NoJob{.told = std::move(told), .sentence = std::move(sentence), .status = ExitStatus::Usage};
   }
 
-  NextInPreparation plan(const session::Session& session, bool will_be_homed) {
+  [[nodiscard]] job::ResumeFacts facts(const session::Session& session, bool will_be_homed) const {
     const machine::Snapshot& now = session.snapshot();
-    job::ResumeFacts facts = wish_.work ? job::facts_of_job(wish_.work->history, wish_.work->file_start, *wish_.file,
-                                                            now, session.capabilities())
-                                        : job::facts_of_present(now, session.capabilities());
+    const job::Program& file = *wish_.file.program();
+    job::ResumeFacts facts =
+        wish_.work ? job::facts_of_job(wish_.work->history, wish_.work->file_start, file, now, session.capabilities())
+                   : job::facts_of_present(now, session.capabilities());
     facts.will_be_homed = will_be_homed;
-    const auto made = job::plan_resume(*wish_.file, facts, wish_.choice);
+    return facts;
+  }
+
+  NextInPreparation plan(Instant at, const session::Session& session, bool needs_home) {
+    const job::Program& file = *wish_.file.program();
+    const auto made = job::plan_resume(file, facts(session, needs_home), wish_.choice);
     if (!made) return refused(made.error());
-    const auto rehearsal = simulation::rehearse_resume(*wish_.file, *made, now, session.capabilities());
+    // Nothing moves before it is clear that there is a plan.
+    if (needs_home && !wish_.dry_run) return home(at, session.snapshot(), *made);
+    const auto rehearsal = simulation::rehearse_resume(file, *made, session.snapshot(), session.capabilities());
     if (!rehearsal) return refused(rehearsal.error());
-    std::vector<std::string> told;
-    if (wish_.json) {
-      io::Json shown;
-      shown["plan"] = io::to_json(*made);
-      shown["rehearsal"] = io::to_json(*rehearsal);
-      told.push_back(io::print(shown));
-    } else {
-      told = job::text_of(*made);
-      told.push_back(rehearsal->sentence);
+    Told told{.lines = job::text_of(*made),
+              .event = {{"event", "plan"}, {"plan", io::to_json(*made)}, {"rehearsal", io::to_json(*rehearsal)}}};
+    told.lines.push_back(rehearsal->sentence);
+    if (wish_.dry_run) {
+      told.lines.emplace_back("A dry run: nothing was sent.");
+      return NoJob{.told = std::move(told), .status = ExitStatus::Done};
     }
-    if (wish_.dry_run) return NoJob{.told = std::move(told), .status = ExitStatus::Done};
     if (!may_run_ && !wish_.says_yes) {
       asked_ = Question::Run;
       return AskOperator{.told = std::move(told), .question = "Is everything as these steps say? Go on? [y/N] "};
     }
-    if (may_run_) told.clear();
-    return begin(std::move(told), *made);
+    return begin(may_run_ ? Told{} : std::move(told), *made);
   }
 
   NextInPreparation refused(const job::ResumeRefusal& refusal) const {
-    std::vector<std::string> told;
-    if (wish_.json) {
-      io::Json shown;
-      shown["refusal"] = io::to_json(refusal);
-      told.push_back(io::print(shown));
-    }
-    return give_up(std::move(told), refusal.sentence + (refusal.next.empty() ? "" : " " + refusal.next));
+    return give_up({.lines = {}, .event = {{"event", "refused"}, {"refusal", io::to_json(refusal)}}},
+                   refusal.sentence + (refusal.next.empty() ? "" : " " + refusal.next));
   }
 
-  [[nodiscard]] BeginJob begin(std::vector<std::string> told, const job::ResumePlan& made) const {
-    job::ResumedProgram resumed{.program = wish_.file, .origin = {}};
+  [[nodiscard]] NextInPreparation begin(Told told, const job::ResumePlan& made) const {
+    const auto& file = wish_.file.program();
+    session::StartJob job{.program = file, .origin = {}};
     if (!made.steps.empty()) {
-      resumed = job::resumed_program(*wish_.file, made);
-      resumed.origin.file_hash = wish_.file->hash();
+      auto rest = assemble(*file, made);
+      if (!rest) return give_up({}, io::explain(rest.error(), file->name()));
+      job.program = *std::move(rest);
+      job.origin = job::origin_of(made);
+      job.origin.file_hash = file->hash();
     }
-    resumed.origin.path = wish_.path;
-    if (wish_.work) resumed.origin.continues = wish_.work->number;
-    return {.told = std::move(told), .job = {.program = resumed.program, .origin = resumed.origin}};
+    job.origin.path = wish_.path;
+    if (wish_.work) job.origin.continues = wish_.work->number;
+    return BeginJob{.told = std::move(told), .job = std::move(job)};
+  }
+
+  [[nodiscard]] static std::expected<std::shared_ptr<const job::Program>, io::ProgramFileError> assemble(
+      const job::Program& file, const job::ResumePlan& made) {
+    const job::ResumedText text = job::resumed_text(file, made);
+    auto rest = io::ProgramFile::assemble(file.name(), [&text](const io::ProgramFile::Put& put) {
+      const std::string blank_lines(std::min<std::size_t>(text.blank_lines, 4096), '\n');
+      for (std::size_t left = text.blank_lines; left > 0; left -= std::min(left, blank_lines.size())) {
+        put(std::string_view{blank_lines}.substr(0, left));
+      }
+      put(text.head);
+      constexpr std::size_t kPieceBytes = std::size_t{1} << 20U;
+      for (std::size_t at = 0; at < text.rest.size(); at += kPieceBytes) put(text.rest.substr(at, kPieceBytes));
+    });
+    if (!rest) return std::unexpected{std::move(rest.error())};
+    return rest->program();
   }
 
   ResumeWish wish_;
   Question asked_ = Question::None;
   bool may_home_ = false;
   bool may_run_ = false;
-  bool is_homing_ = false;
+  HomingWait homing_;
   bool is_homed_ = false;
-  std::uint64_t reports_at_home_ = 0;
   std::string last_asked_;
+  Instant asked_at_{};
 };
 
 }  // namespace

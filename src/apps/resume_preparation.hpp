@@ -6,8 +6,8 @@
 #include <string>
 
 #include "apps/job_preparation.hpp"
+#include "io/program_file.hpp"
 #include "sender/job/journal.hpp"
-#include "sender/job/program.hpp"
 #include "sender/job/resume_plan.hpp"
 
 namespace kerf::apps {
@@ -21,14 +21,13 @@ struct InterruptedWork {
 };
 
 struct ResumeWish {
-  std::shared_ptr<const job::Program> file;
+  io::ProgramFile file;
   std::string path;
   /// Empty: the program begins at a line, and nobody knows an earlier job.
   std::optional<InterruptedWork> work{};
   job::ResumeChoice choice;
   bool dry_run = false;
   bool says_yes = false;
-  bool json = false;
 };
 
 [[nodiscard]] std::unique_ptr<JobPreparation> prepare_resume(ResumeWish wish);

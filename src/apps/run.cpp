@@ -12,19 +12,9 @@
 #include "io/program_file.hpp"
 
 namespace kerf::apps {
-namespace {
-
-std::unique_ptr<JobView> view_for(const RunOptions& options) {
-  if (options.json) return make_json_view();
-  if (is_terminal(STDOUT_FILENO)) return make_terminal_view();
-  return make_line_view();
-}
-
-}  // namespace
-
 ExitStatus run(const RunOptions& options) {
   if (options.start.from_line) return run_from_line(options);
-  const std::unique_ptr<JobView> view = view_for(options);
+  const std::unique_ptr<JobView> view = make_view(options.json);
   const auto refuse = [&](const std::string& sentence) {
     view->failed(sentence, ExitStatus::Usage);
     return ExitStatus::Usage;

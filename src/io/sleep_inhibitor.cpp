@@ -90,8 +90,7 @@ SleepInhibitor::SleepInhibitor(EventLoop& loop, std::string why, std::function<v
     owner->descriptor = grant.descriptor;
     if (grant.descriptor >= 0 || owner->is_over) return;
     loop.post([noted, fault = grant.fault] {
-      noted(fmt::format("Nobody keeps this computer awake while the job runs ({}): see to it that it does not sleep.",
-                        fault));
+      noted(fmt::format("This computer may fall asleep during the job: switch that off ({}).", fault));
     });
   }).detach();
 }

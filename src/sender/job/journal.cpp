@@ -4,6 +4,11 @@
 
 namespace kerf::job {
 
+std::uint32_t file_line_of(const JobOrigin& origin, std::uint32_t line) {
+  if (line <= origin.preamble_lines) return origin.first_line;
+  return line - origin.preamble_lines + origin.first_line - 1;
+}
+
 void JobHistory::fold(const JournalRecord& record) {
   last_at = record.at;
   std::visit(base::Overloaded{

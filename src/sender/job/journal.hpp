@@ -38,6 +38,9 @@ struct JobOrigin {
 };
 BOOST_DESCRIBE_STRUCT(JobOrigin, (), (path, file_hash, first_line, preamble_lines, continues))
 
+/// Line of the file for a line of the job's program; a line of the preamble counts as the first one behind it.
+[[nodiscard]] std::uint32_t file_line_of(const JobOrigin& origin, std::uint32_t line);
+
 /// The machine before the first line of a job. An empty optional means "never told".
 struct MachineAtStart {
   vocabulary::Firmware firmware = vocabulary::Firmware::Unknown;

@@ -29,12 +29,6 @@ std::string because_of(ExecutingKnownBy known_by) {
   return "nothing is known of the lines before";
 }
 
-/// Program lines of a job as lines of the file; a line of the preamble counts as the first line behind it.
-std::uint32_t file_line_of(const JobOrigin& origin, std::uint32_t line) {
-  if (line <= origin.preamble_lines) return origin.first_line;
-  return line - origin.preamble_lines + origin.first_line - 1;
-}
-
 std::string doubt_of(const JobHistory& job) {
   if (!job.closed) return "Kerf, its computer or the power ended in the middle of the job";
   if (job.closed->state.position_suspect) return "the job ended in motion: " + job.closed->state.reason;

@@ -32,6 +32,11 @@ bool is_on(const machine::Capabilities& capabilities, int setting) {
   return (static_cast<int>(machine::setting_number(capabilities, setting).value_or(0)) & 1) != 0;
 }
 
+/// "grblHAL with axes XYZ"
+std::string kind_of(const MachineAtStart& machine) {
+  return std::string{vocabulary::name_of(machine.firmware)} + " with axes " + machine.axes;
+}
+
 /// Builds one plan. Each stage returns what is wrong, or nothing.
 class Planning {
  public:
@@ -93,8 +98,9 @@ class Planning {
     }
     const MachineAtStart& present = facts_.present;
     if (facts_.start.firmware != present.firmware || facts_.start.axes != present.axes) {
-      return no(ResumeProblem::OtherMachine, 0, "The machine is not the one that the job was cut on.",
-                "Connect to the machine of the job.");
+      return no(ResumeProblem::OtherMachine, 0,
+                "The job was cut on a " + kind_of(facts_.start) + ", and this machine is a " + kind_of(present) + ".",
+                "Connect to the machine of the job (--machine).");
     }
     if (!facts_.will_be_homed && present.state != vocabulary::MachineState::Idle) {
       return no(ResumeProblem::MachineNotReady, 0, "The machine is not idle.",
