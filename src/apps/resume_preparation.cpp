@@ -54,6 +54,7 @@ class ResumePreparation final : public JobPreparation {
 
   NextInPreparation next(Instant at, const session::Session& session) override {
     if (asked_ != Question::None) return KeepWaiting{};
+    if (ready_) return when_heard(at, session.snapshot());
     if (homing_.has_begun() && !is_homed_) return follow_homing(at, session);
     const machine::Snapshot& now = session.snapshot();
     const bool needs_home = can_be_homed(session) && !wish_.choice.position_is_confirmed && !is_homed_ &&
@@ -87,7 +88,21 @@ class ResumePreparation final : public JobPreparation {
           .question = "Home now? [y/N] "};
     }
     homing_.begin(at, now);
-    return session::Command{session::Home{}};
+    return get_ready(at, now, session::Command{session::Home{}});
+  }
+
+  /// The plan of a long program takes seconds, in which nobody listened to the machine: it is heard first.
+  NextInPreparation get_ready(Instant at, const machine::Snapshot& now, NextInPreparation what) {
+    ready_ = std::move(what);
+    ready_at_ = at;
+    reports_when_ready_ = now.reports;
+    return KeepWaiting{};
+  }
+
+  NextInPreparation when_heard(Instant at, const machine::Snapshot& now) {
+    const bool is_heard = now.reports != reports_when_ready_;
+    if (!is_heard && at - ready_at_ < kLongestAnswer) return KeepWaiting{};
+    return *std::exchange(ready_, std::nullopt);
   }
 
   NextInPreparation follow_homing(Instant at, const session::Session& session) {
@@ -155,7 +170,7 @@ class ResumePreparation final : public JobPreparation {
       asked_ = Question::Run;
       return AskOperator{.told = std::move(told), .question = "Is everything as these steps say? Go on? [y/N] "};
     }
-    return begin(may_run_ ? Told{} : std::move(told), *made);
+    return get_ready(at, session.snapshot(), begin(may_run_ ? Told{} : std::move(told), *made));
   }
 
   NextInPreparation refused(const job::ResumeRefusal& refusal) const {
@@ -178,17 +193,20 @@ class ResumePreparation final : public JobPreparation {
     return BeginJob{.told = std::move(told), .job = std::move(job)};
   }
 
-  [[nodiscard]] static std::expected<std::shared_ptr<const job::Program>, io::ProgramFileError> assemble(
-      const job::Program& file, const job::ResumePlan& made) {
+  [[nodiscard]] std::expected<std::shared_ptr<const job::Program>, io::ProgramFileError> assemble(
+      const job::Program& file, const job::ResumePlan& made) const {
     const job::ResumedText text = job::resumed_text(file, made);
-    auto rest = io::ProgramFile::assemble(file.name(), [&text](const io::ProgramFile::Put& put) {
+    auto rest = io::ProgramFile::assemble(file.name(), [this, &text](const io::ProgramFile::Put& put) {
       const std::string blank_lines(std::min<std::size_t>(text.blank_lines, 4096), '\n');
       for (std::size_t left = text.blank_lines; left > 0; left -= std::min(left, blank_lines.size())) {
         put(std::string_view{blank_lines}.substr(0, left));
       }
       put(text.head);
       constexpr std::size_t kPieceBytes = std::size_t{1} << 20U;
-      for (std::size_t at = 0; at < text.rest.size(); at += kPieceBytes) put(text.rest.substr(at, kPieceBytes));
+      for (std::size_t at = 0; at < text.rest.size(); at += kPieceBytes) {
+        put(text.rest.substr(at, kPieceBytes));
+        wish_.file.give_back();
+      }
     });
     if (!rest) return std::unexpected{std::move(rest.error())};
     return rest->program();
@@ -202,6 +220,10 @@ class ResumePreparation final : public JobPreparation {
   bool is_homed_ = false;
   std::string last_asked_;
   Instant asked_at_{};
+  /// What is decided, and waits for the next report.
+  std::optional<NextInPreparation> ready_;
+  Instant ready_at_{};
+  std::uint64_t reports_when_ready_ = 0;
 };
 
 }  // namespace

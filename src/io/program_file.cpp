@@ -208,8 +208,13 @@ std::expected<ProgramFile, ProgramFileError> ProgramFile::mapped(const std::stri
   auto program = reader.finish();
   if (!program) return std::unexpected<ProgramFileError>(std::move(program.error()));
   ProgramFile file;
+  file.mapping_ = mapping;
   file.program_ = *std::move(program);
   return file;
+}
+
+void ProgramFile::give_back() const {
+  if (mapping_) mapping_->give_back();
 }
 
 }  // namespace kerf::io

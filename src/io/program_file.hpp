@@ -39,6 +39,8 @@ class ProgramFile {
       const std::string& name, const std::function<void(const Put&)>& write);
 
   [[nodiscard]] const std::shared_ptr<const job::Program>& program() const { return program_; }
+  /// Now, for whoever reads faster than the thread gives back.
+  void give_back() const;
 
  private:
   class Mapping;
@@ -47,6 +49,8 @@ class ProgramFile {
   [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> held(const std::string& path, std::string text);
   [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> mapped(const std::string& path, int copy);
 
+  /// Null for a program in memory.
+  std::shared_ptr<const Mapping> mapping_;
   std::shared_ptr<const job::Program> program_;
 };
 

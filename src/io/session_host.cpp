@@ -101,13 +101,16 @@ void SessionHost::write_down() {
   if (fault && callbacks_.noted) callbacks_.noted(*fault);
 }
 
-void SessionHost::write_journal(std::vector<job::JournalRecord> records) {
-  if (!journal_) return;
+void SessionHost::write_lines(session::Outbox& outbox) {
   const bool begins_job = std::ranges::any_of(
-      records, [](const auto& record) { return std::holds_alternative<job::JobBegun>(record.what); });
-  journal_->append(std::move(records));
-  // Nothing moves yet. Behind this, a kill always leaves a job that can be found.
-  if (begins_job) journal_->wait_until_written(kPatienceAtBeginning);
+      outbox.journal, [](const auto& record) { return std::holds_alternative<job::JobBegun>(record.what); });
+  if (journal_ && begins_job) {
+    // Nothing moves yet. Behind this, a kill always leaves a job that can be found.
+    journal_->append(std::exchange(outbox.journal, {}));
+    journal_->wait_until_written(kPatienceAtBeginning);
+  }
+  if (!outbox.lines.empty()) link_.transport().write_lines(outbox.lines);
+  if (journal_) journal_->append(std::move(outbox.journal));
 }
 
 void SessionHost::settle() {
@@ -115,8 +118,7 @@ void SessionHost::settle() {
   is_settling_ = true;
   for (session::Outbox outbox = session_.take_outbox(); !outbox.empty(); outbox = session_.take_outbox()) {
     if (!outbox.realtime.empty()) link_.transport().write_realtime(outbox.realtime);
-    write_journal(std::move(outbox.journal));
-    if (!outbox.lines.empty()) link_.transport().write_lines(outbox.lines);
+    write_lines(outbox);
     write_down();  // behind the bytes: they have no time to lose
     for (const session::Event& event : outbox.events) {
       if (const auto command = keeper_.on_event(event, session_)) session_.submit(loop_.now(), *command);

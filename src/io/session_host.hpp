@@ -52,8 +52,8 @@ class SessionHost {
   /// Empties the outbox, and arms the timer.
   void settle();
   void write_down();
-  /// Does not return before the beginning of a job is on the disk; within limits.
-  void write_journal(std::vector<job::JournalRecord> records);
+  /// Then the journal; but the beginning of a job is on the disk, within limits, before its first line leaves.
+  void write_lines(session::Outbox& outbox);
   void open_journal(const MachineUrl& url, const JournalOptions& options);
 
   EventLoop& loop_;

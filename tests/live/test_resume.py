@@ -1,38 +1,42 @@
 """A job is cut off by kill -9, found again, and finished: planned, homed, rehearsed, asked for, and run."""
 
+import concurrent.futures
 import json
 import os
 import random
 import re
 import signal
+import socket
 import time
 import unittest
 
 from kerf_program import DONE, INTERRUPTED, PERSONALITIES, USAGE, LiveTest, OnTerminal, Running, VirtualMachine, kerf
 
-# Homing on, quick axes, and a work zero inside the travel.
-SETTINGS = ("$22=1", "$27=1", "$110=6000", "$111=6000", "$112=6000", "$120=500", "$121=500", "$122=500",
-            "$24=1000", "$25=3000")
-ROWS = 60
+# Homing on, a small quick machine.
+SETTINGS = ("$22=1", "$24=3000", "$25=10000", "$26=10", "$27=1", "$110=10000", "$111=10000", "$112=10000", "$120=2000",
+            "$121=2000", "$122=2000", "$130=60", "$131=60", "$132=60")
+# The operator knows that this spindle is quick.
+GO = ("--yes", "--trial", "--spin-up", "0.1")
 
 
-def milling(rows=ROWS):
+def milling(rows=20):
     """Each line goes to a place of its own."""
-    lines = ["G21 G90 G17 G54", "M3 S1000", "G0 Z5", "G0 X2 Y2", "G1 Z-1 F500"]
+    lines = ["G21 G90 G17 G54", "M3 S1000", "G0 Z5", "G0 X2 Y2", "G1 Z-1 F2000"]
     for row in range(rows):
-        far = 40 if row % 2 == 0 else 2
-        lines += [f"G1 X{far} F2500", f"G1 Y{2 + (row + 1) * 0.5:g}"]
+        far = 20 if row % 2 == 0 else 2
+        lines += [f"G1 X{far} F9000", f"G1 Y{2 + (row + 1) * 0.5:g}"]
     return "\n".join(lines + ["G0 Z5", "M5", "M30"]) + "\n"
 
 
 class Resumes(LiveTest):
-    def machine(self, personality, **options):
-        settings = self.file("settings.txt", "\n".join(SETTINGS) + "\n")
-        return VirtualMachine(personality, "--settings", settings, speed="12", **options)
+    def machine(self, personality, *options):
+        settings = self.file(personality + ".txt", "\n".join(SETTINGS) + "\n")
+        return VirtualMachine(personality, "--settings", settings, *options, speed="1")
 
-    def prepare(self, machine):
-        """Homed, with a work zero in the middle of the table."""
-        result = kerf("console", "--machine", machine.url, text="$H\nG10 L2 P1 X-120 Y-120 Z-30\n:status\n")
+    def prepare(self, machine, personality):
+        """Homed, with a work zero inside the travel, which on Rabbit is above zero."""
+        inside = 5 if personality == "rabbit" else -45
+        result = kerf("console", "--machine", machine.url, text=f"$H\nG10 L2 P1 X{inside} Y{inside} Z-20\n")
         self.assertEqual(result.returncode, DONE, result.stdout + result.stderr)
 
     def cut_off(self, arguments, at_line):
@@ -40,7 +44,7 @@ class Resumes(LiveTest):
         with Running(*arguments, "--json") as job:
             line = 0
             while line < at_line:
-                found = job.wait_for(r'"file_line":(\d+).*?\n')
+                found = job.wait_for(r'"executing":{"from":(\d+).*?\n')
                 line = int(found[1])
                 job.output = job.output[found.end():]
             time.sleep(random.random() * 0.1)
@@ -48,60 +52,62 @@ class Resumes(LiveTest):
             job.wait()
         return line
 
-    def listed(self):
-        result = kerf("resume", "--list", "--json")
+    def listed(self, *arguments):
+        result = kerf("resume", "--list", "--json", *arguments)
         self.assertEqual(result.returncode, DONE, result.stderr)
         return json.loads(result.stdout)
 
-    def events(self, *arguments):
-        result = kerf(*arguments, "--json")
-        return result, [json.loads(line) for line in result.stdout.splitlines()]
-
     def test_a_killed_job_is_finished(self):
-        program = self.file("part.nc", milling())
-        lines = len(milling().splitlines())
-        for personality in PERSONALITIES:
-            with self.subTest(personality), self.machine(personality) as machine:
-                self.prepare(machine)
-                killed_at = self.cut_off(("run", program, "--machine", machine.url), 40)
-                job = self.listed()[0]
-                self.assertEqual((job["path"], job["file"], job["lines"]), (program, "Same", lines))
-                text = kerf("resume", "--list").stdout
-                self.assertIn(f"{job['number']}  {program}", text)
-                self.assertIn("Kerf was killed", text)
+        with concurrent.futures.ThreadPoolExecutor() as pool:  # they wait for their machines most of the time
+            for _ in pool.map(self.kill_and_finish, PERSONALITIES):
+                pass
 
-                plan, shown = self.events("resume", "--dry-run")
-                self.assertEqual(plan.returncode, DONE, plan.stdout + plan.stderr)
-                self.assertEqual([event["event"] for event in shown][-2:], ["found", "plan"])
-                self.assertLessEqual(shown[-1]["plan"]["from_line"], killed_at)
-                self.assertTrue(shown[-1]["plan"]["steps"])
-                self.assertEqual(len(self.listed()), 1)
+    def kill_and_finish(self, personality):
+        program = self.file(personality + ".nc", milling())
+        journal = ("--journal", os.path.join(self.folder, personality))
+        with self.machine(personality) as machine:
+            self.prepare(machine, personality)
+            killed_at = self.cut_off(("run", program, "--machine", machine.url, *journal), 12)
+            job, = self.listed(*journal)
+            lines = len(milling().splitlines())
+            self.assertEqual((job["path"], job["file"], job["lines"]), (program, "Same", lines), personality)
+            text = kerf("resume", "--list", *journal).stdout
+            self.assertIn(f"{job['number']}  {program}", text)
+            self.assertIn("Kerf was killed", text)
 
-                # A resume that is cut off, too, goes on.
-                again_at = self.cut_off(("resume", "--yes", "--trial"), killed_at + 20)
-                second = self.listed()[0]
-                self.assertEqual(len(self.listed()), 1)
-                self.assertGreaterEqual(second["line_sent"], again_at)
+            plan = kerf("resume", "--dry-run", "--json", *journal)
+            self.assertEqual(plan.returncode, DONE, plan.stdout + plan.stderr)
+            shown = [json.loads(line) for line in plan.stdout.splitlines()]
+            self.assertEqual([event["event"] for event in shown][-2:], ["found", "plan"])
+            self.assertLessEqual(shown[-1]["plan"]["from_line"], killed_at + 2)
+            self.assertTrue(shown[-1]["plan"]["steps"], personality)
+            self.assertEqual(len(self.listed(*journal)), 1)
 
-                result = kerf("resume", "--yes", "--trial")
-                self.assertEqual(result.returncode, DONE, result.stdout + result.stderr)
-                self.assertIn("Homes first", result.stdout)
-                self.assertIn("Done: ", result.stdout)
-                self.assertEqual(self.listed(), [])
-                self.assert_complains(kerf("resume"), USAGE, "ran to its end", "kerf resume --list")
-                self.assert_complains(kerf("resume", str(job["number"])), USAGE, f"as job {second['number']}")
+            # A resume that is cut off, too, goes on.
+            again_at = self.cut_off(("resume", *GO, *journal), killed_at + 8)
+            second, = self.listed(*journal)
+            self.assertGreaterEqual(second["line_sent"], again_at)
+
+            result = kerf("resume", *GO, *journal)
+            self.assertEqual(result.returncode, DONE, result.stdout + result.stderr)
+            self.assertIn("The machine is homed", result.stdout)
+            self.assertIn("Done: ", result.stdout)
+            self.assertEqual(self.listed(*journal), [])
+            self.assert_complains(kerf("resume", *journal), USAGE, "ran to its end", "kerf resume --list")
+            again = kerf("resume", str(job["number"]), *journal)
+            self.assert_complains(again, USAGE, f"as job {second['number']}")
 
     def test_the_questions_on_a_terminal(self):
         program = self.file("part.nc", milling())
         with self.machine("grblhal") as machine:
-            self.prepare(machine)
-            self.cut_off(("run", program, "--machine", machine.url), 30)
-            with OnTerminal("resume", "--trial") as terminal:
+            self.prepare(machine, "grblhal")
+            self.cut_off(("run", program, "--machine", machine.url), 15)
+            with OnTerminal("resume", "--trial", "--spin-up", "0.1") as terminal:
                 terminal.wait_for(r"Home now\? \[y/N\]")
                 terminal.press("n")
                 self.assertEqual(terminal.wait(), INTERRUPTED)
                 self.assertIn("no line was sent", terminal.output)
-            with OnTerminal("resume", "--trial") as terminal:
+            with OnTerminal("resume", "--trial", "--spin-up", "0.1") as terminal:
                 terminal.wait_for(r"Home now\? \[y/N\]")
                 terminal.press("y")
                 terminal.wait_for(r"Go on\? \[y/N\]")
@@ -115,8 +121,8 @@ class Resumes(LiveTest):
         program = self.file("part.nc", milling())
         self.assert_complains(kerf("resume"), USAGE, "nothing to resume")
         with self.machine("grbl") as machine:
-            self.prepare(machine)
-            self.cut_off(("run", program, "--machine", machine.url), 30)
+            self.prepare(machine, "grbl")
+            self.cut_off(("run", program, "--machine", machine.url), 15)
             number = str(self.listed()[0]["number"])
             self.assert_complains(kerf("resume", "99"), USAGE, "no job 99", "--list")
             self.assert_complains(kerf("resume", "--from-line", "9999"), USAGE, "no line 9999", "part.nc")
@@ -138,14 +144,17 @@ class Resumes(LiveTest):
 
     def test_a_machine_that_does_not_home_is_not_waited_for(self):
         program = self.file("part.nc", milling())
-        with self.machine("grblhal") as machine:
-            self.prepare(machine)
-            self.cut_off(("run", program, "--machine", machine.url), 30)
-            # The switches are read the wrong way round.
-            kerf("console", "--machine", machine.url, text="$5=7\n")
-            result = kerf("resume", "--yes", "--trial", timeout=60)
-            self.assertEqual(result.returncode, USAGE, result.stdout + result.stderr)
-            self.assertIn("No line of the job was sent", result.stderr)
+        control = os.path.join(self.folder, "control")
+        with self.machine("grblhal", "--control", "unix:" + control) as machine:
+            self.prepare(machine, "grblhal")
+            self.cut_off(("run", program, "--machine", machine.url), 15)
+            with socket.socket(socket.AF_UNIX) as link:
+                link.connect(control)
+                link.sendall(b"limit X on\n")
+                self.assertEqual(link.recv(100).strip(), b"ok")
+            result = kerf("resume", *GO)
+            self.assertNotEqual(result.returncode, DONE, result.stdout + result.stderr)
+            self.assertIn("resume again", result.stderr)
 
     def test_from_line(self):
         program = self.file("part.nc", milling(10))
