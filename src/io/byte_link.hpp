@@ -9,6 +9,8 @@
 
 #include <boost/system/error_code.hpp>
 
+#include "common/vocabulary/realtime.hpp"
+
 namespace kerf::io {
 
 /// Lives as long as an operation of it is under way. Nothing is called after close() nor after `lost`.
@@ -31,8 +33,10 @@ class ByteLink {
   virtual void start() = 0;
   /// There may be room again.
   virtual void go_on() = 0;
-  /// Goes out before every line byte that the operating system does not have yet.
+  /// Goes out before every line byte that the operating system does not have yet. A soft reset voids those: behind it a
+  /// controller would execute them with default modes.
   void write_realtime(std::string_view bytes) {
+    if (bytes.contains(static_cast<char>(vocabulary::Realtime::SoftReset))) lines_.clear();
     realtime_.append(bytes);
     write();
   }
@@ -44,7 +48,6 @@ class ByteLink {
 
   /// Bytes that wait here because the other end reads too slowly.
   [[nodiscard]] std::size_t waiting_bytes() const { return realtime_.size() + lines_.size(); }
-  void drop_waiting_lines() { lines_.clear(); }
 
  protected:
   /// Gives the next piece to the operating system, unless it still has one.

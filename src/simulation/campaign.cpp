@@ -314,7 +314,8 @@ class CampaignRun {
   void decide() {
     const auto& job = *world_.session().job();
     const bool is_stalled = job.hold_cause == job::HoldCause::Stall;
-    if (is_stalled && !(job.stall && job.stall->goes_on_at)) {
+    const bool is_off_path = job.hold_cause == job::HoldCause::OffPath;
+    if (is_off_path || (is_stalled && !(job.stall && job.stall->goes_on_at))) {
       note("the operator stops a job that cannot go on");
       world_.submit(session::StopJob{});
       return;

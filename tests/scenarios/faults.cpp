@@ -48,16 +48,54 @@ TEST_P(Faults, ARebootInAJobIsNoticedAndNothingIsSentOn) {
   EXPECT_TRUE(account_adds_up(world));
 }
 
+std::string welcome_of(Firmware firmware) {
+  switch (firmware) {
+    case Firmware::Rabbit: return "\r\nRabbit GRBL v1.6.0 Build 20260315  \r\n";
+    case Firmware::GrblHal: return "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n";
+    default: return "\r\nGrbl 1.1h ['$' for help]\r\n";
+  }
+}
+
 TEST_P(Faults, NoLineLeavesBetweenAnAnswerAndAWelcomeThatCameTogether) {
-  const std::string welcome = GetParam() == Firmware::Rabbit    ? "\r\nRabbit GRBL v1.6.0 Build 20260315  \r\n"
-                              : GetParam() == Firmware::GrblHal ? "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n"
-                                                                : "\r\nGrbl 1.1h ['$' for help]\r\n";
   World world{quick_serial(GetParam())};
   ASSERT_TRUE(start(world, zigzag(30), 3s));
   const auto lines = lines_sent(world, streaming::Purpose::JobLine);
-  world.inject_to_session("ok\r\nok\r\nok\r\n" + welcome);
+  world.inject_to_session("ok\r\nok\r\nok\r\n" + welcome_of(GetParam()));
   EXPECT_EQ(world.session().job()->phase, JobPhase::Interrupted);
   EXPECT_EQ(lines_sent(world, streaming::Purpose::JobLine), lines);
+}
+
+// The answer may be the last word of a controller that somebody resets.
+TEST_P(Faults, NoLineFollowsAnAnswerThatComesInAHold) {
+  World world{quick_serial(GetParam())};
+  ASSERT_TRUE(start(world, zigzag(200), 3s));
+  world.submit(session::HoldJob{});
+  const auto is_held = [](const auto& w) { return w.session().job()->phase == JobPhase::Held; };
+  ASSERT_TRUE(world.run_until(is_held, 10s));
+  const auto lines = lines_sent(world, streaming::Purpose::JobLine);
+  world.inject_to_session("ok\r\nok\r\nok\r\n");
+  world.run_for(1s);
+  EXPECT_EQ(lines_sent(world, streaming::Purpose::JobLine), lines);
+  world.submit(session::ResumeJob{});
+  world.run_for(10ms);
+  EXPECT_GT(lines_sent(world, streaming::Purpose::JobLine), lines);
+}
+
+// They would be executed with default modes.
+TEST_P(Faults, LinesOnTheirWayToAControllerThatRestartedAreDroppedByOneMoreReset) {
+  auto options = quick_network(GetParam());
+  options.wire.latency = 60ms;
+  World world{options};
+  ASSERT_TRUE(start(world, zigzag(30), 3s));
+  ASSERT_FALSE(world.session().ledger().empty());
+  const auto announced = told<session::ControllerReset>(world).size();
+  ASSERT_TRUE(world.order("reset"));
+  ASSERT_TRUE(world.run_until(is_over, 10s));
+  EXPECT_EQ(told<session::ControllerReset>(world).size(), announced + 1);
+  const auto ready = [](const auto& w) { return w.session().phase() == SessionPhase::Ready; };
+  ASSERT_TRUE(world.run_until(ready, 20s));
+  EXPECT_EQ(told<session::ControllerReset>(world).size(), announced + 1);
+  EXPECT_TRUE(account_adds_up(world));
 }
 
 TEST_P(Faults, ACutLinkInterruptsWhereTheScriptSays) {

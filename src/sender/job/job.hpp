@@ -94,6 +94,8 @@ class Job {
   [[nodiscard]] bool can_resume() const {
     return resumable_ && (state_.phase == JobPhase::Held || state_.phase == JobPhase::Draining);
   }
+  /// It is held, or will be: no line may leave before it goes on.
+  [[nodiscard]] bool stands() const { return state_.phase == JobPhase::Holding || state_.phase == JobPhase::Held; }
   /// The line of JobOrder::FeedAgain.
   [[nodiscard]] std::uint32_t goes_on_at() const { return goes_on_at_; }
   [[nodiscard]] const JobState& state() const { return state_; }

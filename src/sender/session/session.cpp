@@ -112,6 +112,7 @@ void Session::on_report(Instant now, MachineState before) {
 
 void Session::on_welcome(Instant now) {
   const bool asked = reset_pending_until_.has_value();
+  const bool lines_on_their_way = !asked && has_job() && ledger().owes(Purpose::JobLine);
   reset_pending_until_.reset();
   streamer_.pause(false);
   strike_out();
@@ -125,6 +126,16 @@ void Session::on_welcome(Instant now) {
   tell(ControllerRestarted{.asked = asked});
   poller_.stop();
   handshake_.restart(now, asked);
+  if (lines_on_their_way) drop_lines_of_fresh_controller(now);
+}
+
+// What reaches it behind its start it would execute with default modes: a line without a motion word is a rapid.
+void Session::drop_lines_of_fresh_controller(Instant now) {
+  if (options_.reset_policy == machine::ResetPolicy::Never) return;
+  tell(ControllerReset{
+      "Lines of the job were on their way when the controller restarted: it is reset once more, so that "
+      "none of them moves the machine."});
+  reset_controller(now);
 }
 
 void Session::on_alarm(Instant now, int code, const machine::Snapshot& before) {
@@ -150,6 +161,8 @@ void Session::strike_out() {
 
 void Session::reset_controller(Instant now) {
   strike_out();
+  // Realtime bytes go first: behind this one those lines would be the first that the controller reads.
+  outbox_.lines.clear();
   streamer_.pause(true);
   reset_pending_until_ = now + kResetPatience;
   send_byte(Realtime::SoftReset);
@@ -219,6 +232,9 @@ void Session::pump(Instant now) {
   if (is_ready() && gate_.verdict(now) != GateVerdict::Open) return;
   if (tool_work_.must_wait()) return;
   if (ledger().empty()) stall_.on_progress(now);
+  // An answer in a hold may be the last word of a controller that somebody resets: a line that followed it would be the
+  // first one that it reads after its start, with default modes.
+  streamer_.let_source_wait(has_job() && job_->stands());
   on_sent(now, streamer_.pump(now, outbox_.lines));
 }
 

@@ -128,6 +128,7 @@ class Session {
   void on_answer(Instant now, const std::optional<streaming::OwedLine>& line, int error_code);
   void on_report(Instant now, vocabulary::MachineState before);
   void on_welcome(Instant now);
+  void drop_lines_of_fresh_controller(Instant now);
   void on_alarm(Instant now, int code, const machine::Snapshot& before);
   void on_alarm_state();
   void follow_pendant(Instant now);

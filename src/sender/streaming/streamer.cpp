@@ -57,7 +57,7 @@ std::vector<OwedLine> Streamer::pump(Instant now, std::string& out) {
     line.text = std::move(queued.text);
     sent.push_back(send(now, out, std::move(line)));
   }
-  while (source_ && !feeding_held_) {
+  while (source_ && !feeding_held_ && !source_waits_) {
     if (flow_ == FlowPolicy::OneAtATime && !ledger_.empty()) break;
     const auto next = source_->next();
     if (!next || !has_room_for(next->text)) break;

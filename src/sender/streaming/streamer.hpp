@@ -35,6 +35,8 @@ class Streamer {
   void stop_feeding();
   /// While held the source keeps its next line.
   void hold_feeding(bool held) { feeding_held_ = held; }
+  /// While waiting the source gives no line, and is not exhausted either.
+  void let_source_wait(bool waits) { source_waits_ = waits; }
   /// How the source is fed; single lines are not meant.
   void feed_by(FlowPolicy flow) { flow_ = flow; }
   /// Forgets single lines that have not been sent.
@@ -77,6 +79,7 @@ class Streamer {
   bool solo_under_way_ = false;
   bool paused_ = false;
   bool feeding_held_ = false;
+  bool source_waits_ = false;
   FlowPolicy flow_ = FlowPolicy::CharacterCounting;
 };
 
