@@ -10,6 +10,7 @@
 #include "sender/job/resume_facts.hpp"
 #include "sender/job/resume_plan.hpp"
 #include "simulation/cutter_watch.hpp"
+#include "simulation/departure_watch.hpp"
 #include "simulation/dice.hpp"
 #include "simulation/undisturbed_job.hpp"
 #include "simulation/world.hpp"
@@ -33,6 +34,8 @@ constexpr Duration kPatience = 120s;
 constexpr Duration kAfterwards = 20s;
 /// Nothing goes on for so long: the operator stops the job.
 constexpr Duration kStuck = 25s;
+/// A report takes so long on a slow wire, behind what the controller says besides.
+constexpr Duration kOnTheWay = 20ms;
 
 class CampaignRun {
  public:
@@ -42,7 +45,8 @@ class CampaignRun {
         wanted_(undisturbed(made_up_)),
         dice_(made_up_.seed ^ 0x9E3779B97F4A7C15U),
         world_(made_up_.world),
-        watch_(wanted_.work_zero, kCampaignStepsPerMm) {
+        watch_(wanted_.work_zero, kCampaignStepsPerMm),
+        path_watch_(wanted_.path, kCampaignStepsPerMm, kOnTheWay + 2 * made_up_.world.wire.latency) {
     for (const auto& event : made_up_.workcell) world_.touch(event);
     must("seed " + std::to_string(made_up_.seed));
   }
@@ -79,7 +83,11 @@ class CampaignRun {
     }
     return true;
   }
-  void look() { watch_.look(world_.now(), world_.controller(), world_.wire_watch().has_sent_motion()); }
+  void look() {
+    watch_.look(world_.now(), world_.controller(), world_.wire_watch().has_sent_motion());
+    // A resumed job has a way of its own.
+    if (watches_path_) path_watch_.look(world_);
+  }
 
   // --- before the job ---
 
@@ -100,6 +108,7 @@ class CampaignRun {
     auto program = job::Program::load("part.nc", made_up_.program);
     if (!program) return false;
     program_ = *program;
+    watches_path_ = true;
     const bool began = start({.program = program_, .options = {.on_error = job::ErrorPolicy::Stop}});
     for (const Fault& fault : made_up_.faults) due_.push_back({.at = job_began_ + instant_of(fault), .fault = &fault});
     return began;
@@ -140,6 +149,8 @@ class CampaignRun {
   // --- after an interruption ---
 
   void put_everything_right() {
+    watches_path_ = false;
+    world_.fill_disk(false);
     std::erase_if(due_, [](const Due& due) { return due.is_over; });
     for (const char* const order : {"faults off", "link restore", "door close", "power on"}) must(order);
     run_for(dice_.up_to(3s));
@@ -259,7 +270,10 @@ class CampaignRun {
   void strike(const Fault& fault) {
     verdict_.struck.push_back(fault.kind);
     note("strikes: " + std::string{name_of(fault.kind)} + " " + fault.order);
-    if (changes_bytes(fault.kind) && !fault.order.contains(" from")) verdict_.unjudged = true;
+    if (changes_bytes(fault.kind) && !fault.order.contains(" from")) bytes_changed_ = true;
+    if (fault.kind == FaultKind::LinkSilent) lines_lost_ = true;
+    // Its position is lost, and with it the place on the path.
+    if (fault.kind == FaultKind::PowerLoss) watches_path_ = false;
     if (!fault.order.empty()) must(fault.order);
     switch (fault.kind) {
       case FaultKind::Kill:
@@ -270,6 +284,7 @@ class CampaignRun {
       case FaultKind::Stop: world_.submit(session::StopJob{}); return;
       case FaultKind::Abort: world_.submit(session::AbortJob{}); return;
       case FaultKind::Override: turn_overrides(); return;
+      case FaultKind::DiskFull: world_.fill_disk(true); break;
       default: break;
     }
     due_.push_back({.at = world_.now() + fault.lasts, .fault = &fault, .is_over = true});
@@ -292,6 +307,7 @@ class CampaignRun {
       case FaultKind::BytesDoubled:
       case FaultKind::BytesCorrupted: must("faults off"); break;
       case FaultKind::Door: must("door close"); break;
+      case FaultKind::DiskFull: world_.fill_disk(false); break;
       default: break;
     }
   }
@@ -301,7 +317,8 @@ class CampaignRun {
     if (is_over()) return;
     follow_progress();
     const bool waits = phase() == JobPhase::Held;
-    const bool something_is_wrong = std::ranges::any_of(due_, [](const Due& due) { return due.is_over; });
+    const bool something_is_wrong =
+        std::ranges::any_of(due_, [](const Due& due) { return due.is_over && due.fault->kind != FaultKind::DiskFull; });
     if (waits && !something_is_wrong) {
       decide();
     } else if (!waits && world_.now() - moved_on_at_ > kStuck && phase() != JobPhase::Stopping) {
@@ -315,6 +332,7 @@ class CampaignRun {
     const auto& job = *world_.session().job();
     const bool is_stalled = job.hold_cause == job::HoldCause::Stall;
     const bool is_off_path = job.hold_cause == job::HoldCause::OffPath;
+    was_held_off_path_ = was_held_off_path_ || is_off_path;
     if (is_off_path || (is_stalled && !(job.stall && job.stall->goes_on_at))) {
       note("the operator stops a job that cannot go on");
       world_.submit(session::StopJob{});
@@ -342,11 +360,20 @@ class CampaignRun {
     verdict_.took = world_.now() - job_began_;
     take(world_.wire_watch().complaints());
     take(world_.line_watch().broken());
+    take(path_watch_.complaints());
     judge_ledger();
-    if (!verdict_.unjudged) {
-      take(watch_.complaints());
-      judge_cut();
-    }
+    judge_path();
+    const bool was_off_path = path_watch_.was_off() || was_held_off_path_;
+    // Where a changed byte stops the spindle, makes a cut a rapid or leaves out a cut and the way back, the path is the
+    // same and the workpiece is not.
+    verdict_.cut_amiss = bytes_changed_ && !watch_.complaints().empty();
+    verdict_.unjudged = (bytes_changed_ && (was_off_path || verdict_.resumes > 0)) || (lines_lost_ && was_off_path) ||
+                        verdict_.cut_amiss;
+    if (!bytes_changed_) take(watch_.complaints());
+    if (!verdict_.unjudged) judge_cut();
+    const bool nothing_else =
+        std::ranges::all_of(verdict_.struck, [](auto kind) { return kind == FaultKind::DiskFull; });
+    if (nothing_else && verdict_.ending != CampaignEnding::Finished) complain("the job did not end in one piece");
     verdict_.transcript = world_.transcript_text();
     for (const auto& record : world_.log()) {
       verdict_.transcript += base::to_fixed(base::to_seconds(record.at), 3) + " " + record.what + "\n";
@@ -374,6 +401,12 @@ class CampaignRun {
     }
   }
 
+  void judge_path() {
+    verdict_.left_path = path_watch_.was_off_in_job();
+    if (verdict_.left_path && !bytes_changed_ && !lines_lost_)
+      complain("the machine left its path, and nothing led to it");
+  }
+
   void judge_cut() {
     const CutDifference difference = compare(wanted_.stock, watch_.stock());
     if (difference.excess_cells > 0) {
@@ -381,7 +414,9 @@ class CampaignRun {
                text_of(difference.excess));
     }
     const bool is_done = verdict_.ending == CampaignEnding::Finished || verdict_.ending == CampaignEnding::Resumed;
-    if (is_done && difference.missing_cells > 0) {
+    if (is_done && difference.missing_cells > 0 && bytes_changed_) {
+      verdict_.cut_amiss = true;
+    } else if (is_done && difference.missing_cells > 0) {
       complain(std::to_string(difference.missing_cells) + " cells were left uncut, one at " +
                text_of(difference.missing));
     }
@@ -414,6 +449,7 @@ class CampaignRun {
   Dice dice_;
   World world_;
   CutterWatch watch_;
+  DepartureWatch path_watch_;
   CampaignVerdict verdict_;
   std::shared_ptr<const job::Program> program_;
   std::vector<Due> due_;
@@ -422,6 +458,11 @@ class CampaignRun {
   std::uint32_t lines_acknowledged_ = 0;
   JobPhase last_phase_{};
   bool is_killed_ = false;
+  bool watches_path_ = false;
+  /// On their way to the controller.
+  bool bytes_changed_ = false;
+  bool lines_lost_ = false;
+  bool was_held_off_path_ = false;
 };
 
 }  // namespace

@@ -13,10 +13,15 @@
 //       cut what the undisturbed job cuts, nothing is missing and nothing is in excess (Stock); one that ended
 //       otherwise has cut nothing that the undisturbed job does not cut;
 //   (f) every job comes to an end.
+//   (g) the machine keeps to the path of the job unless bytes on their way to it were lost, doubled or changed, or the
+//       link was silent for a while; then a machine that is off its path is held within one report (DepartureWatch);
+//   (h) a full disk of the journal changes nothing for the job.
 // The operator of a campaign puts right what is broken, connects anew, homes where the machine can, confirms the
-// position where it cannot and the machine really is where it says, and takes every plan to resume as it is. Where
-// bytes on the way to the controller were lost, doubled or changed, the machine may have been told another program:
-// there (d) and (e) are not asserted, only counted as `unjudged`.
+// position where it cannot and the machine really is where it says, and takes every plan to resume as it is. He stops a
+// job that is held off its path, and goes on after lost answers only where Kerf says that it is safe. What a machine
+// that was told another program has cut until it was held is bounded by (g): (e) is not asserted there; such runs
+// are counted as `unjudged`. Where bytes were changed and the machine keeps to its path all the same, excess is judged;
+// (d) and what is missing are only counted (`cut_amiss`).
 
 #include <cstdint>
 #include <string>
@@ -50,6 +55,11 @@ struct CampaignVerdict {
   int resumes = 0;
   /// The cut was not judged.
   bool unjudged = false;
+  /// Changed bytes, on the path of the job: a rapid through uncut stock, a tool that stands still was fed into it, or
+  /// something was left uncut.
+  bool cut_amiss = false;
+  /// The machine was off its path while the job ran.
+  bool left_path = false;
   /// On the machine's clock.
   Duration took{};
   /// What must not be; empty for a good run.

@@ -107,6 +107,11 @@ CampaignCase campaign_case(std::uint64_t seed) {
   const std::size_t lines = dice.one_in(10) ? 300 : 20 + dice.below(90);
   made_up.program = milling_job(dice, features_of(made_up.world.firmware), lines);
   for (int faults = dice.pick({0, 1, 1, 1, 2, 2, 3, 5}); faults > 0; --faults) made_up.faults.push_back(fault(dice));
+  Dice disk{seed ^ 0xD15C0F0FD15C0F0FU};
+  if (disk.one_in(8)) {
+    made_up.faults.push_back(
+        {.kind = FaultKind::DiskFull, .at_share = disk.within(-0.02, 1.0), .lasts = disk.up_to(30s)});
+  }
   std::ranges::sort(made_up.faults, {}, &Fault::at_share);
   return made_up;
 }

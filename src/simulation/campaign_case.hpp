@@ -33,10 +33,12 @@ enum class FaultKind : std::uint8_t {
   Door,            ///< the door opens and closes
   Stop,            ///< the operator stops the job, position kept
   Abort,           ///< the operator aborts it
+  DiskFull,        ///< the disk of the journal has no room; beside the others, so that their dice stay the same
 };
+/// Those that the dice of a fault choose among.
 inline constexpr std::size_t kFaultKinds = 15;
 BOOST_DESCRIBE_ENUM(FaultKind, Kill, LinkCut, LinkSilent, Reset, PowerLoss, Stall, BytesLost, BytesDoubled,
-                    BytesCorrupted, Hold, HoldButton, Override, Door, Stop, Abort)
+                    BytesCorrupted, Hold, HoldButton, Override, Door, Stop, Abort, DiskFull)
 
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] constexpr bool changes_bytes(FaultKind kind) {

@@ -2,15 +2,20 @@
 
 #include "simulation/campaign.hpp"
 
+#include <chrono>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "simulation/departure_watch.hpp"
+#include "simulation/memory_journal.hpp"
 #include "simulation/undisturbed_job.hpp"
 #include "simulation/wire_watch.hpp"
 
 namespace kerf::simulation {
 namespace {
 
+using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -83,6 +88,47 @@ TEST(WireWatch, AnAnswerTooManyIsTold) {
   EXPECT_THAT(watch.complaints(), IsEmpty());
   watch.on_outbox(Instant{}, out, 100);
   EXPECT_THAT(watch.complaints(), testing::Contains(HasSubstr("again")));
+}
+
+TEST(DepartureWatch, AJobThatGoesOnOffItsPathIsTold) {
+  World world{network_world(vocabulary::Firmware::GrblHal, 1ms)};
+  world.open();
+  const auto is_ready = [](const World& w) { return w.session().phase() == session::SessionPhase::Ready; };
+  ASSERT_TRUE(world.run_until(is_ready, 60s));
+  world.run_for(1s);
+  constexpr double kSteps = 250;
+  DepartureWatch right{{{}, {.x = 10}}, kSteps, 20ms};
+  DepartureWatch wrong{{{}, {.y = 10}}, kSteps, 20ms};
+  world.submit(session::StartJob{.program = *job::Program::load("part.nc", "G21G91\nG1X10F600\n")});
+  const Instant end = world.now() + 1min;
+  while (!(world.session().job() && job::is_final(world.session().job()->phase)) && world.step(end)) {
+    right.look(world);
+    wrong.look(world);
+  }
+  EXPECT_FALSE(right.was_off());
+  EXPECT_THAT(right.complaints(), IsEmpty());
+  EXPECT_TRUE(wrong.was_off_in_job());
+  EXPECT_THAT(wrong.complaints(), SizeIs(1));
+}
+
+TEST(MemoryJournal, WhatAFullDiskDoesNotTakeIsWrittenLaterUnlessTheSenderIsKilled) {
+  MemoryJournal journal;
+  const auto job = [](std::uint32_t number) {
+    std::vector<job::JournalRecord> records;
+    records.push_back({.at = Instant{}, .job = number, .what = job::JobBegun{}});
+    return records;
+  };
+  journal.append(job(1));
+  journal.fill_disk(true);
+  journal.append(job(2));
+  EXPECT_THAT(journal.jobs(), SizeIs(1));
+  journal.fill_disk(false);
+  EXPECT_THAT(journal.jobs(), SizeIs(2));
+  journal.fill_disk(true);
+  journal.append(job(3));
+  journal.lose_since(Instant{} + std::chrono::seconds{1});
+  journal.fill_disk(false);
+  EXPECT_THAT(journal.jobs(), SizeIs(2));
 }
 
 TEST(CutterWatch, ACutThatIsNotTheJobsIsTold) {

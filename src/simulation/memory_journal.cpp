@@ -1,6 +1,7 @@
 #include "simulation/memory_journal.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <variant>
 
@@ -15,6 +16,16 @@ void fold(std::vector<job::JobHistory>& jobs, const job::JournalRecord& record) 
 }  // namespace
 
 void MemoryJournal::append(std::vector<job::JournalRecord> records) {
+  if (!is_full_) return write(std::move(records));
+  waiting_.insert(waiting_.end(), std::make_move_iterator(records.begin()), std::make_move_iterator(records.end()));
+}
+
+void MemoryJournal::fill_disk(bool is_full) {
+  is_full_ = is_full;
+  if (!is_full_) write(std::exchange(waiting_, {}));
+}
+
+void MemoryJournal::write(std::vector<job::JournalRecord> records) {
   for (job::JournalRecord& record : records) {
     if (std::holds_alternative<job::JobBegun>(record.what)) numbers_[record.job] = ++jobs_;
     record.job = numbers_.at(record.job);
@@ -27,6 +38,7 @@ void MemoryJournal::append(std::vector<job::JournalRecord> records) {
 }
 
 void MemoryJournal::lose_since(Instant from) {
+  waiting_.clear();
   std::erase_if(recent_, [from](const job::JournalRecord& record) { return record.at >= from; });
   numbers_.clear();
   jobs_ = static_cast<std::uint32_t>(settled_.size());

@@ -19,6 +19,8 @@ class MemoryJournal {
   static constexpr Duration kMostUnwritten = std::chrono::seconds{1};
 
   void append(std::vector<job::JournalRecord> records);
+  /// While its disk is full, what it is told waits, as in the store.
+  void fill_disk(bool is_full);
   /// The sender is gone, and what it told at `from` or later, in the last kMostUnwritten, was not written down.
   void lose_since(Instant from);
 
@@ -26,6 +28,10 @@ class MemoryJournal {
   [[nodiscard]] std::vector<job::JobHistory> jobs() const;
 
  private:
+  void write(std::vector<job::JournalRecord> records);
+
+  bool is_full_ = false;
+  std::vector<job::JournalRecord> waiting_;
   /// What no crash can take.
   std::vector<job::JobHistory> settled_;
   std::deque<job::JournalRecord> recent_;

@@ -19,6 +19,11 @@ using vocabulary::MachineState;
 /// No line of a made-up job keeps a machine busy for so long.
 constexpr Duration kLongestLine = 600s;
 
+Point point_of(const vocabulary::AxisSteps& steps) {
+  return {
+      .x = steps[0] / kCampaignStepsPerMm, .y = steps[1] / kCampaignStepsPerMm, .z = steps[2] / kCampaignStepsPerMm};
+}
+
 class Rehearsal {
  public:
   explicit Rehearsal(const CampaignCase& made_up)
@@ -39,6 +44,8 @@ class Rehearsal {
           static_cast<std::int32_t>(std::lround(offset[axis] * kCampaignStepsPerMm)) - machine[axis];
     }
     watch_.emplace(job_.work_zero, kCampaignStepsPerMm);
+    job_.path.push_back(point_of(machine));
+    controller_.keep_motion_log();
     const Instant began = now_;
     for (const std::string_view line : base::split(made_up_.program, '\n')) {
       // Only grblHAL knows `%`, and it changes nothing.
@@ -47,6 +54,7 @@ class Rehearsal {
     }
     wait([this] { return controller_.state() == MachineState::Idle; }, "the end");
     job_.takes = now_ - began;
+    for (const auto& piece : controller_.motion_log().stretches()) job_.path.push_back(point_of(piece.end_steps));
     job_.stock = watch_->stock();
     job_.complaints.insert(job_.complaints.end(), watch_->complaints().begin(), watch_->complaints().end());
     return std::move(job_);

@@ -13,6 +13,8 @@ namespace kerf::simulation {
 struct UndisturbedJob {
   Stock stock;
   Duration takes{};
+  /// Ends of its straight pieces, machine coordinates in mm; the first is where it begins.
+  std::vector<Point> path;
   /// In motor steps since the first power-on.
   vocabulary::AxisSteps work_zero{};
   vocabulary::AxisSteps machine_zero{};

@@ -70,6 +70,8 @@ class World {
   void kill_sender(Duration unwritten = std::chrono::milliseconds{50});
   void submit(const session::Command& command);
   void touch(const firmware::WorkcellEvent& event);
+  /// The disk of the journal has no room, or has some again.
+  void fill_disk(bool is_full) { journal_.fill_disk(is_full); }
   /// Does what a line of a script says, now: `drop to next 3`, `link cut`, `reboot`. False if it is none.
   [[nodiscard]] bool order(std::string_view line);
   /// Plays a script from now on. False if it is none.

@@ -79,6 +79,8 @@ void enter(Tally& tally, const CampaignCase& made_up, const CampaignVerdict& ver
   tally.add("link " + name(made_up.link));
   tally.add("ending " + name(verdict.ending));
   if (verdict.unjudged) tally.add("cut not judged");
+  if (verdict.cut_amiss) tally.add("changed bytes: on the path, cut amiss");
+  if (verdict.left_path) tally.add("off the path of the job");
   if (verdict.resumes > 0) tally.add("resumes", static_cast<std::uint64_t>(verdict.resumes));
   if (!verdict.refusal.empty()) tally.add("no plan: " + verdict.refusal);
   for (const FaultKind kind : verdict.struck) {
