@@ -84,6 +84,8 @@ void WireWatch::on_lines(Instant now, std::string_view lines, std::size_t window
 
 void WireWatch::on_line(Instant now, std::string_view line, std::size_t window_bytes) {
   ++lines_sent_;
+  // The welcome got lost, and whoever sends has waited for it long enough: answers are this line's again.
+  reset_pending_ = false;
   in_flight_.push_back({.bytes = line.size(), .asks_parser_state = base::trim(line) == "$G"});
   bytes_in_flight_ += line.size();
   most_in_flight_ = std::max(most_in_flight_, bytes_in_flight_);
