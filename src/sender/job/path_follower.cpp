@@ -40,6 +40,8 @@ constexpr double kRpmSlack = 2.0;
 constexpr double kPercent = 100.0;
 /// Departures of 0.05 mm are always seen where a step is smaller.
 constexpr double kWidest = 0.045;
+/// Beyond that, what the answers prove to be over is let go: 4 MB.
+constexpr std::size_t kMostPieces = 50'000;
 
 bool is_unknown(const PathPiece& piece, std::size_t axis) {
   return (piece.unknown_axes >> axis & 1U) != 0;
@@ -205,6 +207,9 @@ std::optional<PathDeparture> PathFollower::on_report(PathForecast& forecast, Pat
 void PathFollower::move_to(PathForecast& forecast, const Fit& found, const PathReport& report) {
   first_ = *found.first;
   last_ = found.last;
+  // A path that covers itself again and again fits at its beginning for ever.
+  const std::uint64_t over = std::min(forecast.surely_over(), last_.piece);
+  if (forecast.pieces().size() > kMostPieces && over > first_.piece) first_ = {.piece = over, .part = 0};
   reaches_end_ = found.reaches_end;
   is_lost_ = false;
   forecast.forget_before(first_.piece);

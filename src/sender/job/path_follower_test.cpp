@@ -208,6 +208,19 @@ TEST_F(Follower, WaitsForTheReportOfANewWorkOffset) {
   EXPECT_TRUE(report(11, 0.5F));
 }
 
+TEST_F(Follower, DoesNotKeepAPathThatCoversItselfAgainAndAgain) {
+  constexpr int kRounds = 100'000;
+  for (int round = 0; round < kRounds; ++round) {
+    send({"G1X1F60000", "X0"});
+    forecast_.on_acknowledged();
+    forecast_.on_acknowledged();
+    if (round % 100 == 0) {
+      EXPECT_FALSE(report(0, 0, 0, 60s));
+    }
+  }
+  EXPECT_LT(forecast_.pieces().size(), 60'000U);
+}
+
 TEST(Tolerance, IsAboutAStep) {
   PathRules rules;
   EXPECT_DOUBLE_EQ(tolerance_mm(rules, false), 0.02) << "steps unknown";
