@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string_view>
 
 #include "common/base/text.hpp"
@@ -40,6 +39,8 @@ constexpr double kRpmSlack = 2.0;
 constexpr double kPercent = 100.0;
 /// Departures of 0.05 mm are always seen where a step is smaller.
 constexpr double kWidest = 0.045;
+/// Where a report fits more pieces it says too little about where the machine is.
+constexpr std::uint64_t kMostCandidates = 8;
 /// Beyond that, what the answers prove to be over is let go: 4 MB.
 constexpr std::size_t kMostPieces = 50'000;
 
@@ -136,9 +137,12 @@ double tolerance_mm(const PathRules& rules, bool reports_inches) {
   return std::sqrt(square) + kRoundings * (reports_inches ? kLastDigitInchMm : kLastDigitMm) + kFloatMm;
 }
 
-void PathFollower::begin(Instant now, const AxisValues& start_mm, const FollowerRules& rules) {
+void PathFollower::begin(Instant now, const AxisValues& start_mm, const PathRules& path, const FollowerRules& rules) {
+  const StepLoss before = loss_;
   *this = {};
   rules_ = rules;
+  loss_ = before;
+  loss_.begin(path, kRoundings * (rules.reports_inches ? kLastDigitInchMm : kLastDigitMm) + kFloatMm);
   reported_mm_ = start_mm;
   made_after_ = now;
   override_changed_ = now;
@@ -149,7 +153,9 @@ double PathFollower::limit_s(const PathReport& report) const {
   return last_s_ + base::to_seconds(report.arrived - made_after_ + kSlack) * rules_.clock;
 }
 
-PathFollower::Fit PathFollower::fit(const PathForecast& forecast, const AxisValues& at_mm, double limit) const {
+PathFollower::Fit PathFollower::fit(const PathForecast& forecast, const AxisValues& told_mm, double limit) const {
+  const AxisValues at_mm = without_loss(told_mm);
+  const double within_mm = tolerance();
   const auto axes = static_cast<std::size_t>(forecast.rules().settings.axes);
   const auto& pieces = forecast.pieces();
   Fit found;
@@ -158,7 +164,7 @@ PathFollower::Fit PathFollower::fit(const PathForecast& forecast, const AxisValu
   for (; number < forecast.first_piece() + pieces.size(); ++number) {
     const PathPiece& piece = pieces[static_cast<std::size_t>(number - forecast.first_piece())];
     if (piece.reached_s > limit) return found;
-    Overlap part = overlap(piece, at_mm, axes, rules_.tolerance_mm);
+    Overlap part = overlap(piece, at_mm, axes, within_mm);
     if (part.distance_mm < found.distance_mm) {
       found.distance_mm = part.distance_mm;
       found.nearest = {.piece = number, .part = part.nearest};
@@ -195,6 +201,7 @@ std::optional<PathDeparture> PathFollower::on_report(PathForecast& forecast, Pat
   if (found.first) {
     impossible_ = early_ = 0;
     move_to(forecast, found, report);
+    learn_loss(forecast, report);
     if (forecast.is_open() && reaches_end_) return std::nullopt;
     return check_speeds(forecast, report);
   }
@@ -386,13 +393,28 @@ std::optional<PathDeparture> PathFollower::check_speeds(const PathForecast& fore
   return strange;
 }
 
-// grblHAL begins the counters of its line algorithm anew when it goes on, so that the lesser axes may end up to a step
-// short, and nothing puts that right until the next homing (motion/rules.hpp).
-void PathFollower::on_stop(const PathRules& rules) {
-  if (!rules.motion.restart_resets_bresenham) return;
-  const double step_mm = (tolerance_mm(rules, false) - kFloatMm - kRoundings * kLastDigitMm) / std::numbers::sqrt3;
-  if (step_mm > 0)
-    rules_.tolerance_mm = std::max(rules_.tolerance_mm, std::min(rules_.tolerance_mm + step_mm, kWidest));
+double PathFollower::tolerance() const {
+  return std::max(rules_.tolerance_mm, std::min(rules_.tolerance_mm + loss_.reach_mm(), kWidest));
+}
+
+void PathFollower::learn_loss(const PathForecast& forecast, const PathReport& report) {
+  // A report that means one of two places says nothing.
+  if (report.work_mm && forecast.work_offsets().size() > 1) return;
+  if (last_.piece - first_.piece > kMostCandidates) return;
+  const auto axes = static_cast<std::size_t>(forecast.rules().settings.axes);
+  std::vector<PathPiece> candidates;
+  for (std::uint64_t number = first_.piece; number <= last_.piece; ++number) {
+    const PathPiece& piece = forecast.pieces()[static_cast<std::size_t>(number - forecast.first_piece())];
+    if (piece.unknown_axes != 0) return;
+    if (!overlap(piece, without_loss(report.machine_mm), axes, tolerance()).is_empty()) candidates.push_back(piece);
+  }
+  loss_.narrow(candidates, report.machine_mm);
+}
+
+AxisValues PathFollower::without_loss(const AxisValues& told_mm) const {
+  AxisValues at = told_mm;
+  for (std::size_t axis = 0; axis < at.size(); ++axis) at[axis] -= loss_.middle_mm()[axis];
+  return at;
 }
 
 ExecutingLines PathFollower::executing(const PathForecast& forecast) const {

@@ -12,6 +12,7 @@
 #include "common/base/time.hpp"
 #include "sender/job/executing_lines.hpp"
 #include "sender/job/path_forecast.hpp"
+#include "sender/job/step_loss.hpp"
 
 namespace kerf::job {
 
@@ -85,13 +86,13 @@ struct FollowerRules {
 class PathFollower {
  public:
   /// `start_mm`: where the machine stands, machine coordinates.
-  void begin(Instant now, const AxisValues& start_mm, const FollowerRules& rules);
+  void begin(Instant now, const AxisValues& start_mm, const PathRules& path, const FollowerRules& rules);
   /// Empty when the report fits, and where the path is not known. Forgets pieces that are behind.
   [[nodiscard]] std::optional<PathDeparture> on_report(PathForecast& forecast, PathReport report);
   /// Motion that the program does not know of (a door, parking): speeds are not compared until it is back.
   void on_interlude() { strange_speeds_ = 0; }
-  /// The machine was stopped in mid-motion: what its firmware loses by that is no departure.
-  void on_stop(const PathRules& rules);
+  /// The machine goes on in mid-motion: what its firmware loses by that is no departure.
+  void on_restart() { loss_.on_restart(); }
   [[nodiscard]] ExecutingLines executing(const PathForecast& forecast) const;
 
  private:
@@ -109,7 +110,7 @@ class PathFollower {
     bool reaches_end = false;
   };
 
-  [[nodiscard]] Fit fit(const PathForecast& forecast, const AxisValues& at_mm, double limit_s) const;
+  [[nodiscard]] Fit fit(const PathForecast& forecast, const AxisValues& told_mm, double limit_s) const;
   [[nodiscard]] double limit_s(const PathReport& report) const;
   [[nodiscard]] Fit fit_with_any_offset(const PathForecast& forecast, PathReport& report, double limit) const;
   [[nodiscard]] bool is_possible(const PathForecast& forecast, const PathReport& report) const;
@@ -123,8 +124,13 @@ class PathFollower {
   [[nodiscard]] PathDeparture departure(const PathForecast& forecast, const PathReport& report, const Fit& best) const;
   void move_to(PathForecast& forecast, const Fit& found, const PathReport& report);
   void note(const PathReport& report);
+  void learn_loss(const PathForecast& forecast, const PathReport& report);
+  [[nodiscard]] AxisValues without_loss(const AxisValues& told_mm) const;
+  /// Of places, with what restarts may have cost.
+  [[nodiscard]] double tolerance() const;
 
   FollowerRules rules_;
+  StepLoss loss_;
   Place first_;
   Place last_;
   /// Of `last_`: PathPiece::reached_s.

@@ -24,7 +24,7 @@ class Follower : public testing::Test {
       rules.settings.max_rate_mm_per_min.at(axis) = 3000;
     }
     forecast_.begin(gcode::Interpreter{gcode::rules_for(vocabulary::Firmware::Grbl)}, {}, rules);
-    follower_.begin(now_, {}, {.tolerance_mm = tolerance_mm(rules, false), .least_rpm = 0, .most_rpm = 1000});
+    follower_.begin(now_, {}, rules, {.tolerance_mm = tolerance_mm(rules, false), .least_rpm = 0, .most_rpm = 1000});
   }
   void send(std::initializer_list<std::string_view> lines) {
     for (const std::string_view line : lines) forecast_.on_sent(++line_, line);
@@ -206,6 +206,22 @@ TEST_F(Follower, WaitsForTheReportOfANewWorkOffset) {
   EXPECT_FALSE(report(11, 0));
   report_.work_mm = AxisValues{1, 0.5F, 0};
   EXPECT_TRUE(report(11, 0.5F));
+}
+
+/// grblHAL loses steps when it goes on.
+TEST_F(Follower, KnowsThatStepsAreLostWhenTheMachineGoesOn) {
+  PathRules rules = forecast_.rules();
+  rules.motion = motion::rules_of(vocabulary::Firmware::GrblHal);
+  forecast_.begin(gcode::Interpreter{gcode::rules_for(vocabulary::Firmware::GrblHal)}, {}, rules);
+  follower_.begin(now_, {}, rules, {.tolerance_mm = tolerance_mm(rules, false)});
+  send({"G1X900F1200"});
+  for (int i = 1; i <= 30; ++i) {
+    follower_.on_restart();
+    const auto at = static_cast<float>(i);
+    EXPECT_FALSE(report(at, at * -0.004F)) << i;
+    EXPECT_FALSE(report(at + 0.5F, at * -0.004F)) << i;
+  }
+  EXPECT_TRUE(report(33, -0.17F)) << "not by a restart";
 }
 
 TEST_F(Follower, DoesNotKeepAPathThatCoversItselfAgainAndAgain) {

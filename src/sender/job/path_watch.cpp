@@ -42,7 +42,7 @@ void PathWatch::begin(Instant now, const std::optional<gcode::Interpreter>& read
                       const machine::Capabilities& known, double clock) {
   const PathRules rules = path_rules_of(known);
   forecast_ = {};
-  gap_told_ = false;
+  gap_told_ = stands_ = restarted_ = false;
   const AxisValues start = snapshot.machine_position_mm ? axis_values(*snapshot.machine_position_mm) : AxisValues{};
   if (reader && snapshot.machine_position_mm) {
     forecast_.begin(*reader, start, rules);
@@ -51,7 +51,7 @@ void PathWatch::begin(Instant now, const std::optional<gcode::Interpreter>& read
   }
   constexpr unsigned kMachinePosition = 1;
   tells_work_position_ = (static_cast<unsigned>(number(known, "10", kMachinePosition)) & kMachinePosition) == 0;
-  follower_.begin(now, start,
+  follower_.begin(now, start, rules,
                   {.tolerance_mm = tolerance_mm(rules, number(known, "13", 0) != 0),
                    .clock = clock,
                    .reports_inches = number(known, "13", 0) != 0,
@@ -71,7 +71,9 @@ void PathWatch::on_answer(std::uint32_t file_line, int error_code) {
 std::optional<PathDeparture> PathWatch::on_report(Instant now, std::optional<Instant> asked,
                                                   const machine::Snapshot& snapshot) {
   const bool stands = snapshot.state == MachineState::Hold || snapshot.state == MachineState::Door;
-  if (stands && !std::exchange(stands_, stands)) follower_.on_stop(forecast_.rules());
+  // By a button, or by Kerf.
+  if (!stands && stands_ && !restarted_) follower_.on_restart();
+  if (!stands) restarted_ = false;
   stands_ = stands;
   if (!snapshot.machine_position_mm || !follows_program(snapshot.state)) {
     follower_.on_interlude();
@@ -91,6 +93,12 @@ std::optional<PathDeparture> PathWatch::on_report(Instant now, std::optional<Ins
     report.spindle_override = snapshot.overrides->spindle;
   }
   return follower_.on_report(forecast_, report);
+}
+
+void PathWatch::on_cycle_start() {
+  if (!stands_) return;
+  restarted_ = true;
+  follower_.on_restart();
 }
 
 void PathWatch::on_overruled() {

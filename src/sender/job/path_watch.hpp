@@ -36,6 +36,8 @@ class PathWatch {
   /// `asked`: when the question went out that this report answers, the earliest one if there were several.
   [[nodiscard]] std::optional<PathDeparture> on_report(Instant now, std::optional<Instant> asked,
                                                        const machine::Snapshot& snapshot);
+  /// A cycle start leaves.
+  void on_cycle_start();
   /// The operator goes on although the machine is not where the program says.
   void on_overruled();
   /// The operator works by hand while the job waits.
@@ -51,6 +53,8 @@ class PathWatch {
   bool tells_work_position_ = false;
   bool gap_told_ = false;
   bool stands_ = false;
+  /// A cycle start has left since it stands.
+  bool restarted_ = false;
 };
 
 }  // namespace kerf::job

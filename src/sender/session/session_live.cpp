@@ -26,6 +26,7 @@ bool is_row(const protocol::Message& message) {
 }  // namespace
 
 void Session::send_byte(Realtime byte) {
+  if (byte == Realtime::CycleStart) path_.on_cycle_start();
   outbox_.realtime += static_cast<char>(machine::byte_for(byte, dialect(), text_under_way()));
 }
 
