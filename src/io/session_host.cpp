@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 #include <utility>
 #include <variant>
 
@@ -47,7 +48,11 @@ SessionHost::SessionHost(EventLoop& loop, const MachineUrl& url, session::Sessio
              .received =
                  [this](std::string_view bytes) {
                    const std::string lines = session_.feed_ahead(loop_.now(), bytes);
-                   if (!lines.empty()) link_.transport().write_lines(lines);
+                   if (!lines.empty()) {
+                     link_.transport().write_lines(lines);
+                     // A pty passes bytes on in a thread of the kernel, which may wait for this core.
+                     std::this_thread::yield();
+                   }
                    settle();
                  },
              .lost = [this](const TransportError& error) { on_lost(error); }}) {

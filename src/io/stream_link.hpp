@@ -12,6 +12,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/write.hpp>
+#include <unistd.h>
 
 #include "io/byte_link.hpp"
 
@@ -44,9 +45,30 @@ class StreamLink final : public ByteLink, public std::enable_shared_from_this<St
 
  protected:
   void write() override {
-    if (is_writing_ || this->waiting_bytes() == 0) return;
+    if (is_writing_) return;
+    while (this->waiting_bytes() != 0) {
+      outgoing_ = this->take_piece();
+      outgoing_.erase(0, write_at_once());
+      if (!outgoing_.empty()) return finish_piece();
+    }
+  }
+
+ private:
+  /// How many bytes of `outgoing_` the operating system took without delay. Of a fault finish_piece() hears.
+  std::size_t write_at_once() {
+    boost::system::error_code fault;
+    if constexpr (requires { stream_.non_blocking(true, fault); }) {
+      if (!stream_.non_blocking()) stream_.non_blocking(true, fault);
+      return stream_.write_some(boost::asio::buffer(outgoing_), fault);
+    } else {
+      // Asio opens serial ports as non-blocking and has no word for it.
+      const auto taken = ::write(stream_.native_handle(), outgoing_.data(), outgoing_.size());
+      return taken < 0 ? 0 : static_cast<std::size_t>(taken);
+    }
+  }
+
+  void finish_piece() {
     is_writing_ = true;
-    outgoing_ = this->take_piece();
     boost::asio::async_write(stream_, boost::asio::buffer(outgoing_),
                              [self = this->shared_from_this()](boost::system::error_code fault, std::size_t) {
                                self->is_writing_ = false;
@@ -55,7 +77,6 @@ class StreamLink final : public ByteLink, public std::enable_shared_from_this<St
                              });
   }
 
- private:
   void read() {
     const std::size_t room = callbacks_->room ? callbacks_->room() : incoming_.size();
     waits_for_room_ = room == 0;

@@ -9,6 +9,7 @@ namespace kerf::protocol {
 
 std::vector<ReceivedMessage> MessageReader::read(std::string_view bytes) {
   std::vector<ReceivedMessage> out;
+  out.reserve(static_cast<std::size_t>(std::ranges::count(bytes, '\n')) + 1);
   while (!bytes.empty()) {
     const auto* const line_end = std::ranges::find_if(bytes, [](char byte) { return byte == '\r' || byte == '\n'; });
     const std::size_t end =

@@ -66,6 +66,9 @@ void Session::catch_up() {
   if (!ahead_) return;
   const Ahead ahead = std::move(*ahead_);
   ahead_.reset();
+  // An event for each line that was taken and each that left, and a few that follow from them.
+  constexpr std::size_t kOthers = 4;
+  outbox_.events.reserve(outbox_.events.size() + ahead.messages.size() + ahead.sent.size() + kOthers);
   for (std::size_t count = 0; count < ahead.messages.size(); ++count) {
     take_in(ahead.at, ahead.messages[count], ahead.answered[count]);
   }
