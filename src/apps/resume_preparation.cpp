@@ -141,19 +141,20 @@ class ResumePreparation final : public JobPreparation {
     return NoJob{.told = std::move(told), .sentence = std::move(sentence), .status = ExitStatus::Usage};
   }
 
-  [[nodiscard]] job::ResumeFacts facts(const session::Session& session, bool will_be_homed) const {
+  [[nodiscard]] job::ResumeFacts facts(Instant at, const session::Session& session, bool will_be_homed) const {
     const machine::Snapshot& now = session.snapshot();
     const job::Program& file = *wish_.file.program();
     job::ResumeFacts facts =
         wish_.work ? job::facts_of_job(wish_.work->history, wish_.work->file_start, file, now, session.capabilities())
                    : job::facts_of_present(now, session.capabilities());
     facts.will_be_homed = will_be_homed;
+    facts.silent_for_s = session.link_health(at).silent_for_s;
     return facts;
   }
 
   NextInPreparation plan(Instant at, const session::Session& session, bool needs_home) {
     const job::Program& file = *wish_.file.program();
-    const auto made = job::plan_resume(file, facts(session, needs_home), wish_.choice);
+    const auto made = job::plan_resume(file, facts(at, session, needs_home), wish_.choice);
     if (!made) return refused(made.error());
     // Nothing moves before it is clear that there is a plan.
     if (needs_home && !wish_.dry_run) return home(at, session.snapshot(), *made);

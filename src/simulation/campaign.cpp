@@ -34,6 +34,8 @@ constexpr Duration kPatience = 120s;
 constexpr Duration kAfterwards = 20s;
 /// Nothing goes on for so long: the operator stops the job.
 constexpr Duration kStuck = 25s;
+/// After a reset that wakes it, a machine speaks sooner.
+constexpr Duration kPatienceWithSilence = 10s;
 /// A report takes so long on a slow wire, behind what the controller says besides.
 constexpr Duration kOnTheWay = 20ms;
 
@@ -156,8 +158,9 @@ class CampaignRun {
     run_for(dice_.up_to(3s));
   }
 
+  [[nodiscard]] bool is_silent() const { return world_.session().link_health(world_.now()).silent_for_s.has_value(); }
   [[nodiscard]] bool is_idle() const {
-    return world_.session().phase() == SessionPhase::Ready &&
+    return world_.session().phase() == SessionPhase::Ready && !is_silent() &&
            world_.session().snapshot().state == vocabulary::MachineState::Idle && world_.session().ledger().empty() &&
            !watch_.is_moving();
   }
@@ -171,6 +174,29 @@ class CampaignRun {
       if (!run_until(ready, kConnectLimit)) return false;
     }
     run_for(1s);
+    if (!is_silent() || wake()) return rest_and_home();
+    return false;
+  }
+
+  /// A Rabbit whose receive buffer is full while it waits behind a door or a hold reads no byte more, not even a reset.
+  bool wake() {
+    const auto answers = [this] { return world_.session().phase() == SessionPhase::Ready && !is_silent(); };
+    note("the operator resets");
+    world_.submit(session::SoftReset{});
+    if (run_until(answers, kPatienceWithSilence)) return true;
+    note("the operator switches it off and on");
+    must("power off");
+    run_for(1s);
+    must("power on");
+    run_for(1s);
+    if (world_.session().phase() == SessionPhase::Closed) world_.open();
+    if (!run_until(answers, kConnectLimit)) return false;
+    run_for(1s);
+    return true;
+  }
+
+  bool rest_and_home() {
+    const auto ready = [this] { return world_.session().phase() == SessionPhase::Ready; };
     if (world_.session().snapshot().state != vocabulary::MachineState::Idle &&
         world_.session().snapshot().state != vocabulary::MachineState::Alarm) {
       note("the operator resets");
@@ -208,8 +234,9 @@ class CampaignRun {
     const job::JobHistory* root = &jobs.back();
     while (root->begun.origin.continues) root = &jobs.at(static_cast<std::size_t>(*root->begun.origin.continues) - 1);
     const auto& session = world_.session();
-    const auto facts =
+    auto facts =
         job::facts_of_job(jobs.back(), root->begun.machine, *program_, session.snapshot(), session.capabilities());
+    facts.silent_for_s = session.link_health(world_.now()).silent_for_s;
     const auto plan = job::plan_resume(
         *program_, facts, {.offsets = job::OffsetsChoice::AsThen, .position_is_confirmed = is_where_it_says()});
     if (!plan) {
@@ -378,20 +405,8 @@ class CampaignRun {
     for (const auto& record : world_.log()) {
       verdict_.transcript += base::to_fixed(base::to_seconds(record.at), 3) + " " + record.what + "\n";
     }
-    if (made_up_.world.keeps_transcript) tell_notes();
+    if (made_up_.world.keeps_transcript) verdict_.transcript += notes_of(world_.journal());
     return std::move(verdict_);
-  }
-
-  /// What the journal says of every job, for the transcript.
-  void tell_notes() {
-    int number = 0;
-    for (const job::JobHistory& job : world_.journal().jobs()) {
-      const std::string start = "job " + std::to_string(++number) + " ";
-      for (const job::TimedNote& timed : job.notes) {
-        verdict_.transcript += start + std::string{boost::describe::enum_to_string(timed.note.kind, "?")} +
-                               " at line " + std::to_string(timed.note.line) + ": " + timed.note.text + "\n";
-      }
-    }
   }
 
   void judge_ledger() {

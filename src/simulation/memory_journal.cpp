@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include <boost/describe/enum_to_string.hpp>
+
 namespace kerf::simulation {
 namespace {
 
@@ -49,6 +51,19 @@ std::vector<job::JobHistory> MemoryJournal::jobs() const {
   std::vector<job::JobHistory> jobs = settled_;
   for (const job::JournalRecord& record : recent_) fold(jobs, record);
   return jobs;
+}
+
+std::string notes_of(const MemoryJournal& journal) {
+  std::string text;
+  int number = 0;
+  for (const job::JobHistory& job : journal.jobs()) {
+    const std::string start = "job " + std::to_string(++number) + " ";
+    for (const job::TimedNote& timed : job.notes) {
+      text += start + boost::describe::enum_to_string(timed.note.kind, "?") + " at line " +
+              std::to_string(timed.note.line) + ": " + timed.note.text + "\n";
+    }
+  }
+  return text;
 }
 
 }  // namespace kerf::simulation

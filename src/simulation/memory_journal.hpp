@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "common/base/time.hpp"
@@ -39,5 +40,8 @@ class MemoryJournal {
   /// The session's number of a job -> the journal's.
   std::map<std::uint32_t, std::uint32_t> numbers_;
 };
+
+/// What it says of every job, a line each, for a transcript.
+[[nodiscard]] std::string notes_of(const MemoryJournal& journal);
 
 }  // namespace kerf::simulation

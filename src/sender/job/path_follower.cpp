@@ -212,6 +212,7 @@ std::optional<PathDeparture> PathFollower::on_report(PathForecast& forecast, Pat
 }
 
 void PathFollower::move_to(PathForecast& forecast, const Fit& found, const PathReport& report) {
+  confirmed_ = first_;
   first_ = *found.first;
   last_ = found.last;
   // A path that covers itself again and again fits at its beginning for ever.
@@ -219,7 +220,7 @@ void PathFollower::move_to(PathForecast& forecast, const Fit& found, const PathR
   if (forecast.pieces().size() > kMostPieces && over > first_.piece) first_ = {.piece = over, .part = 0};
   reaches_end_ = found.reaches_end;
   is_lost_ = false;
-  forecast.forget_before(first_.piece);
+  forecast.forget_before(confirmed_.piece);
   const auto& pieces = forecast.pieces();
   const PathPiece& piece = pieces[static_cast<std::size_t>(last_.piece - forecast.first_piece())];
   last_s_ = piece.reached_s + last_.part * piece.least_s;
@@ -360,12 +361,15 @@ std::optional<PathDeparture> PathFollower::check_speeds(const PathForecast& fore
     strange_speeds_ = 0;
     return std::nullopt;
   }
-  PathDeparture strange{.file_line = forecast.pieces().front().file_line};
+  const auto piece_at = [&forecast](std::uint64_t number) -> const PathPiece& {
+    return forecast.pieces()[static_cast<std::size_t>(number - forecast.first_piece())];
+  };
+  PathDeparture strange{.file_line = piece_at(first_.piece).file_line};
   double most_feed = 0;
   bool spindle_fits = !report.spindle_rpm;
   const std::uint64_t prepared = last_prepared(forecast, report.feed_override);
   for (std::uint64_t number = first_.piece; number <= prepared; ++number) {
-    const PathPiece& piece = forecast.pieces()[static_cast<std::size_t>(number - forecast.first_piece())];
+    const PathPiece& piece = piece_at(number);
     const bool has_feed = piece.feed_mm_per_min > 0;
     most_feed = std::max(most_feed, has_feed ? static_cast<double>(piece.feed_mm_per_min) : kUnlimited);
     if (!piece.spindle_rpm || !report.spindle_rpm || spindle_fits) {
@@ -425,7 +429,7 @@ ExecutingLines PathFollower::executing(const PathForecast& forecast) const {
     return pieces[static_cast<std::size_t>(number - forecast.first_piece())];
   };
   ExecutingLines lines{.from = 1, .to = forecast.line_sent(), .known_by = ExecutingKnownBy::PlannerBlocks};
-  const std::uint64_t first = std::max({first_.piece, forecast.surely_over(), forecast.first_piece()});
+  const std::uint64_t first = std::max({confirmed_.piece, forecast.surely_over(), forecast.first_piece()});
   lines.from = std::max(1U, first < end ? at(first).file_line : forecast.line_acknowledged());
   const bool is_known = has_report_ && !is_lost_ && !(forecast.is_open() && reaches_end_);
   if (is_known) {

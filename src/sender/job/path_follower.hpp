@@ -132,6 +132,9 @@ class PathFollower {
   FollowerRules rules_;
   StepLoss loss_;
   Place first_;
+  /// `first_` of the report before. A damaged report may fit further on, and then the next one does not fit: only with
+  /// that one it is certain that what lies before has been executed.
+  Place confirmed_;
   Place last_;
   /// Of `last_`: PathPiece::reached_s.
   double last_s_ = 0;

@@ -56,6 +56,7 @@ TEST_F(Follower, FindsTheLinesThatAreExecuting) {
   EXPECT_EQ(executing().from, 1U);
   EXPECT_EQ(executing().to, 3U);
   EXPECT_FALSE(report(10, 1));
+  EXPECT_FALSE(report(10, 1));
   EXPECT_EQ(executing(), (ExecutingLines{.from = 3, .to = 3, .known_by = ExecutingKnownBy::Position}));
 }
 
@@ -124,6 +125,15 @@ TEST_F(Follower, AsksTwiceWhatNoMachineCanDo) {
   EXPECT_FALSE(report(4, 0));
   EXPECT_FALSE(report(4, 80));
   EXPECT_TRUE(report(4, 80.5F));
+}
+
+TEST_F(Follower, BelievesThatALineIsOverOnlyWhenTheNextReportFitsToo) {
+  send({"G1X10F3000", "Y5", "X5"});
+  EXPECT_FALSE(report(8, 0, 0, 400ms));
+  EXPECT_FALSE(report(10, 4, 0, 400ms)) << "changed on its way: the machine is at X9, and it could be at Y4 by now";
+  EXPECT_EQ(executing().from, 1U);
+  EXPECT_TRUE(report(9.1F, 0));
+  EXPECT_EQ(executing().from, 1U);
 }
 
 TEST_F(Follower, SaysNothingBehindAnOpenEnd) {

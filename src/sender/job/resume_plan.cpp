@@ -102,6 +102,12 @@ class Planning {
                 "The job was cut on a " + kind_of(facts_.start) + ", and this machine is a " + kind_of(present) + ".",
                 "Connect to the machine of the job (--machine).");
     }
+    if (facts_.silent_for_s) {
+      return no(ResumeProblem::MachineNotReady, 0,
+                "The machine has not answered for " + base::to_fixed(*facts_.silent_for_s, 0) +
+                    " s: what it said last may not be true any more.",
+                "Look at its cable and its power. If a reset does not wake it, switch it off and on, and home it.");
+    }
     if (!facts_.will_be_homed && present.state != vocabulary::MachineState::Idle) {
       return no(ResumeProblem::MachineNotReady, 0, "The machine is not idle.",
                 "Let it come to rest, and clear an alarm by homing.");

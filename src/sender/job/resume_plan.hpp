@@ -87,6 +87,8 @@ struct ResumeFacts {
   MachineAtStart start{};
   /// Now. At rest; homed if it is to be homed.
   MachineAtStart present{};
+  /// The machine has not answered for so long; empty while it does.
+  std::optional<double> silent_for_s{};
   /// Of the machine now.
   machine::Capabilities capabilities{};
   /// Lines of the file.

@@ -183,6 +183,15 @@ TEST(ResumePlan, WhatAResetWipedComesBack) {
   }
 }
 
+TEST(ResumePlan, AMachineThatDoesNotAnswerIsRefused) {
+  auto facts = testing::facts(Firmware::Rabbit, 9);
+  EXPECT_EQ(plan(kPart, facts).from_line, 9U);
+  facts.silent_for_s = 34.2;
+  const auto refused = refusal(kPart, facts);
+  EXPECT_EQ(refused.problem, ResumeProblem::MachineNotReady);
+  EXPECT_THAT(refused.sentence, HasSubstr("not answered for 34 s"));
+}
+
 TEST(ResumePlan, APositionThatNobodyKnowsIsRefused) {
   auto facts = testing::facts(Firmware::Grbl, 9);
   facts.present.homing.all.reset();
