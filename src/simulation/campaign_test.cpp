@@ -3,6 +3,8 @@
 #include "simulation/campaign.hpp"
 
 #include <chrono>
+#include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,6 +63,25 @@ TEST(WireWatch, WhatAnAnsweredQuestionProvesToBeReadIsNotInFlight) {
   watch.on_received(Instant{}, "[GC:G1 G54]\r\n");
   watch.on_outbox(Instant{}, lines("G1X20\n"), 10);
   EXPECT_THAT(watch.complaints(), SizeIs(1));
+}
+
+// A line that lost its end is one with the next, and both have one answer.
+TEST(WireWatch, EveryQuestionOfKerfProvesIt) {
+  const std::pair<std::string, std::string> questions[] = {
+      {"$G", "[GC:G1 G54]"}, {"$#", "[G54:0.000,0.000,0.000]"}, {"$I", "[VER:1.1h.20190830:]"}, {"$$", "$0=10"},
+      {"$N", "$N0=G54"},
+  };
+  for (const auto& [question, answer] : questions) {
+    WireWatch watch{Duration::zero()};
+    watch.on_command(session::SendLine{});
+    watch.on_outbox(Instant{}, lines("$N1\n" + question + "\n"), 10);
+    watch.on_received(Instant{}, answer + "\r\nok\r\n");
+    watch.on_outbox(Instant{}, lines("G1X1\n"), 10);
+    watch.on_outbox(Instant{}, lines("G1X2\n"), 10);
+    EXPECT_THAT(watch.complaints(), IsEmpty()) << question;
+    watch.on_outbox(Instant{}, lines("M5\n"), 10);
+    EXPECT_THAT(watch.complaints(), SizeIs(1)) << question;
+  }
 }
 
 TEST(WireWatch, MotionWithoutACommandIsTold) {

@@ -38,11 +38,13 @@ double DepartureWatch::distance_to_path(const Point& at) {
 }
 
 void DepartureWatch::look(const World& world) {
+  const auto& steps = world.controller().position_steps();
   if (!follows_program(world.controller().state())) {
     since_.reset();
+    // A reset leaves it there: parked, for example.
+    steps_ = steps;
     return;
   }
-  const auto& steps = world.controller().position_steps();
   const auto& session = world.session();
   const bool is_over = !session.job() || job::is_final(session.job()->phase);
   // Where nothing moves, nothing changes but what the sender knows.

@@ -1,6 +1,7 @@
 #include "simulation/wire_watch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <variant>
 
 #include "common/base/overloaded.hpp"
@@ -21,6 +22,14 @@ bool is_harmless(std::string_view line) {
   return !base::starts_with_ignoring_case(text, "$J") && !base::starts_with_ignoring_case(text, "$H") &&
          !base::starts_with_ignoring_case(text, "$X");
 }
+
+/// A question, and how the first line of its answer begins, which no other line says.
+struct Question {
+  std::string_view asked;
+  std::string_view answer;
+};
+constexpr std::array kQuestions{Question{"$G", "[GC:"}, Question{"$#", "[G54:"}, Question{"$I", "[VER:"},
+                                Question{"$$", "$0="}, Question{"$N", "$N0="}};
 
 bool is_welcome(std::string_view line) {
   return line.starts_with("Rabbit GRBL v") || (line.starts_with("Grbl") && line.contains("['$'"));
@@ -86,7 +95,7 @@ void WireWatch::on_line(Instant now, std::string_view line, std::size_t window_b
   ++lines_sent_;
   // The welcome got lost, and whoever sends has waited for it long enough: answers are this line's again.
   reset_pending_ = false;
-  in_flight_.push_back({.bytes = line.size(), .asks_parser_state = base::trim(line) == "$G"});
+  in_flight_.push_back({.bytes = line.size(), .text = std::string{base::trim(line)}});
   bytes_in_flight_ += line.size();
   most_in_flight_ = std::max(most_in_flight_, bytes_in_flight_);
   if (bytes_in_flight_ > window_bytes && in_flight_.size() > 1) {
@@ -127,9 +136,8 @@ void WireWatch::on_received_line(Instant now, std::string_view line) {
     if (motion_sent_at_ && now - *motion_sent_at_ > round_trip_) motion_sent_at_.reset();
     return;
   }
-  if (line.starts_with("[GC:")) {
-    strike_out_what_was_read();
-    return;
+  for (const Question& question : kQuestions) {
+    if (line.starts_with(question.answer)) strike_out_what_was_read(question.asked);
   }
   if (line != "ok" && !line.starts_with("error:")) return;
   ++answers_received_;
@@ -148,9 +156,10 @@ void WireWatch::forget_oldest() {
 
 // Lines are read in order, so what was sent before the question lies in no buffer any more, whatever became of it or of
 // its answer.
-void WireWatch::strike_out_what_was_read() {
-  if (std::ranges::none_of(in_flight_, &LineInFlight::asks_parser_state)) return;
-  while (!in_flight_.front().asks_parser_state) forget_oldest();
+void WireWatch::strike_out_what_was_read(std::string_view before_question) {
+  const auto is_question = [before_question](const LineInFlight& line) { return line.text == before_question; };
+  if (std::ranges::none_of(in_flight_, is_question)) return;
+  while (!is_question(in_flight_.front())) forget_oldest();
 }
 
 void WireWatch::complain(Instant now, std::string_view what) {

@@ -16,9 +16,9 @@
 namespace kerf::simulation {
 
 /// Counts lines that leave and answers that come in at the sender's end of the wire, and complains when more bytes are
-/// unanswered than the window allows (a line that travels alone may be longer; what stands before a `$G` that was
-/// answered with `[GC:` has been read, although its own answer got lost), when more answers are given to lines
-/// than came in, when one line is answered twice or out of order, and when something that may start motion leaves
+/// unanswered than the window allows (a line that travels alone may be longer; what stands before a question that was
+/// answered, such as `$G` with `[GC:`, has been read, although its own answer got lost), when more answers are given to
+/// lines than came in, when one line is answered twice or out of order, and when something that may start motion leaves
 /// although no command was given since the link was opened or the controller started.
 class WireWatch {
  public:
@@ -51,12 +51,12 @@ class WireWatch {
   void may_move(Instant now, std::string_view what);
   void forget();
   void forget_oldest();
-  void strike_out_what_was_read();
+  void strike_out_what_was_read(std::string_view before_question);
   void complain(Instant now, std::string_view what);
 
   struct LineInFlight {
     std::size_t bytes = 0;
-    bool asks_parser_state = false;
+    std::string text;
   };
 
   /// Oldest first.
