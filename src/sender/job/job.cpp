@@ -169,6 +169,7 @@ void Job::on_lines_lost(std::uint32_t first_file_line, std::uint32_t lines) {
 void Job::hold_for(Instant now, Stall stall) {
   if (ended() || state_.phase == JobPhase::Stopping) return;
   feeding_held_ = true;
+  goes_on_ = false;
   account_.reset();
   order(JobOrder::HoldFeeding);
   enter(now, JobPhase::Held, HoldCause::Stall, stall.goes_on_at.has_value());

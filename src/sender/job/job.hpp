@@ -71,7 +71,9 @@ class Job {
   /// The controller forgot everything that it had not answered: reset, critical alarm or flush.
   void on_lines_lost(std::uint32_t first_file_line, std::uint32_t lines);
   /// What answers are waited for, as of now; empty when they come.
-  void on_stall(std::optional<Stall> stall) { state_.stall = std::move(stall); }
+  void on_stall(std::optional<Stall> stall) {
+    if (!asks_about_stall()) state_.stall = std::move(stall);
+  }
   /// Lines lost their answers: the operator decides. Going on is possible where the stall says with which line.
   void hold_for(Instant now, Stall stall);
   void on_welcome(Instant now);
@@ -125,7 +127,9 @@ class Job {
   [[nodiscard]] bool waits_while_idle() const {
     return is_at_operators_gate() || (state_.phase == JobPhase::Held && state_.hold_cause == HoldCause::Stall);
   }
-  [[nodiscard]] bool asks_about_refusal() const { return feeding_held_ && !goes_on_; }
+  /// Answers got lost, and the operator is asked; whatever the machine reports meanwhile.
+  [[nodiscard]] bool asks_about_stall() const { return feeding_held_ && !account_; }
+  [[nodiscard]] bool asks_about_refusal() const { return account_ && feeding_held_ && !goes_on_; }
   /// A job that ends because of a refused line says so.
   [[nodiscard]] JobPhase stopped_phase() const { return account_ ? JobPhase::Refused : JobPhase::Stopped; }
   [[nodiscard]] bool ended() const { return is_final(state_.phase); }

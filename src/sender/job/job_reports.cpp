@@ -120,6 +120,8 @@ void Job::follow_tool_gate(Instant now) {
 }
 
 void Job::follow_run(Instant now) {
+  // A report that was changed on its way does not answer the question of a stall, and a closed door does not either.
+  if (asks_about_stall()) return enter(now, JobPhase::Held, HoldCause::Stall, state_.stall && state_.stall->goes_on_at);
   // A door that was closed again does not answer the question.
   if (asks_about_refusal() && !hold_ordered_) {
     enter(now, JobPhase::Holding, HoldCause::Refusal);

@@ -176,6 +176,26 @@ TEST_F(JobTest, ADoorDoesNotAnswerTheQuestion) {
   EXPECT_EQ(job.state().hold_cause, HoldCause::Refusal);
 }
 
+TEST_F(JobTest, OnlyTheOperatorAnswersTheQuestionOfAStall) {
+  for (const bool is_safe : {false, true}) {
+    auto job = make();
+    job.hold_for(now_, {.cause = StallCause::LostAnswer, .goes_on_at = is_safe ? std::optional{3U} : std::nullopt});
+    static_cast<void>(job.take_orders());
+    // A state that was changed on its way, and a door that is opened and closed.
+    job.on_snapshot(now_ + 1s, in(MachineState::Unknown));
+    job.on_snapshot(now_ + 2s, in(MachineState::Door, 1));
+    job.on_stall(std::nullopt);
+    job.on_snapshot(now_ + 3s, in(MachineState::Run));
+    job.on_snapshot(now_ + 4s, in(MachineState::Idle));
+    EXPECT_THAT(job.take_orders(), IsEmpty());
+    EXPECT_EQ(job.state().phase, JobPhase::Held);
+    EXPECT_EQ(job.state().hold_cause, HoldCause::Stall);
+    job.resume(now_ + 5s);
+    EXPECT_EQ(job.take_orders().empty(), !is_safe);
+    EXPECT_EQ(job.goes_on_at(), is_safe ? 3U : 0U);
+  }
+}
+
 TEST_F(JobTest, AStopForARefusedLineEndsAsRefused) {
   for (const auto policy : {ErrorPolicy::Stop, ErrorPolicy::HoldAndAsk}) {
     auto job = make({.on_error = policy});
