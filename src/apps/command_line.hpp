@@ -36,6 +36,8 @@ void add_machine(CLI::App& command, std::string& machine, io::RecordingOptions& 
 void add_run(CLI::App& kerf, Chosen& chosen);
 /// `kerf resume`.
 void add_resume(CLI::App& kerf, Chosen& chosen);
+/// `kerf audit`.
+void add_audit(CLI::App& kerf, Chosen& chosen);
 /// `kerf virtual`.
 void add_virtual(CLI::App& kerf, Chosen& chosen);
 

@@ -68,6 +68,18 @@ struct ResumeOptions {
 /// `kerf run --from-line`.
 [[nodiscard]] ExitStatus run_from_line(const RunOptions& options);
 
+/// `kerf audit`.
+struct AuditOptions {
+  std::string machine = kDefaultMachine;
+  std::string axes;  ///< empty: all that home
+  double tolerance_mm = 0.05;
+  bool history = false;  ///< only list the audits of before
+  bool json = false;
+  bool yes = false;
+  io::RecordingOptions recording{};
+};
+[[nodiscard]] ExitStatus audit(const AuditOptions& options);
+
 struct VirtualOptions {
   std::string personality = "grblhal";
   std::vector<std::string> listen;  ///< one for all machines, or one each

@@ -143,4 +143,25 @@ void add_resume(CLI::App& kerf, Chosen& chosen) {
   command->callback([&chosen, options] { chosen = [options] { return resume(*options); }; });
 }
 
+void add_audit(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<AuditOptions>();
+  CLI::App* command = kerf.add_subcommand("audit", "Find out whether the machine lost steps since it was homed");
+  add_machine(*command, options->machine, options->recording);
+  add_journal(*command, options->recording.journal);
+  command->add_option("--axes", options->axes, "Only these axes, such as XY; Z always comes first where it homes")
+      ->type_name("LETTERS");
+  command->add_option("--tolerance", options->tolerance_mm, "Differences up to this are the switch's own")
+      ->type_name("MM")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_flag("--history", options->history, "Only list the audits of before, the newest first");
+  command->add_flag("-y,--yes", options->yes, "Do not ask before the machine moves");
+  command->add_flag("--json", options->json, "Print the result as JSON");
+  command->footer(
+      "\nMoves the machine to its homing switches, homes it, and compares: docs/audit.md. It asks before anything "
+      "moves.\n"
+      "Exit status: 0 the position was kept, 4 it was lost, 3 it could not be measured, 5 stopped.\n");
+  command->callback([&chosen, options] { chosen = [options] { return audit(*options); }; });
+}
+
 }  // namespace kerf::apps

@@ -32,6 +32,7 @@ void Workcell::apply(const WorkcellEvent& event) {
             homing_switches_.at(vocabulary::index_of(moved.axis)) = {.at_travel_end = false,
                                                                      .distance_mm = moved.distance_mm};
           },
+          [&](const StepsLost& lost) { uncounted_.at(vocabulary::index_of(lost.axis)) -= lost.steps; },
           [&](const ProbeSurfaceMoved& moved) {
             surface_mm_ = moved.z_mm;
             surface_shape_ = moved.shape;

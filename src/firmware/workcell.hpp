@@ -43,6 +43,13 @@ struct HomingSwitchMoved {
   std::optional<double> distance_mm;
 };
 
+/// The motor of an axis does not follow: it stays this many steps behind a motion towards plus, or, below zero, behind
+/// one towards minus. The controller does not notice.
+struct StepsLost {
+  vocabulary::Axis axis;
+  std::int32_t steps = 0;
+};
+
 /// How a surface differs from a flat one. Heights are exact where a probe goes straight down; the place where a slanted
 /// one touches is taken from the height below its start.
 struct SurfaceShape {
@@ -77,8 +84,8 @@ struct EncoderPlugged {
   bool plugged = true;
 };
 
-using WorkcellEvent = std::variant<InputChanged, LimitHeld, HomingSwitchMoved, ProbeSurfaceMoved, PortInputChanged,
-                                   SpindleLoaded, EncoderPlugged>;
+using WorkcellEvent = std::variant<InputChanged, LimitHeld, HomingSwitchMoved, StepsLost, ProbeSurfaceMoved,
+                                   PortInputChanged, SpindleLoaded, EncoderPlugged>;
 
 /// What a controller's inputs read. Positions are physical: motor steps since power-on, which no homing or reset
 /// redefines.
@@ -111,7 +118,8 @@ class Workcell {
   /// The motors lose power at `physical` and count from zero when it comes back: switches and surface stay where they
   /// are.
   void restart_count(const vocabulary::AxisSteps& physical);
-  /// Motor steps that were made before the count began again; together with those since they say where the machine is.
+  /// Motor steps that were made before the count began again, less those that were lost; together with those since they
+  /// say where the machine is.
   [[nodiscard]] const vocabulary::AxisSteps& uncounted_steps() const { return uncounted_; }
 
  private:
@@ -131,7 +139,7 @@ class Workcell {
   std::array<HomingSwitch, vocabulary::kMaxAxes> homing_switches_{};
   std::optional<double> surface_mm_;
   SurfaceShape surface_shape_;
-  /// Motor steps that were made before the count began again.
+  /// Motor steps that were made before the count began again, less those that were lost.
   vocabulary::AxisSteps uncounted_{};
 };
 

@@ -92,6 +92,14 @@ ParsedDeed parse_switch(std::string_view /*name*/, Words words) {
   return WorkcellEvent{HomingSwitchMoved{.axis = *axis, .distance_mm = distance_mm}};
 }
 
+ParsedDeed parse_lose(std::string_view /*name*/, Words words) {
+  if (words.size() != 2) return std::nullopt;
+  const auto axis = axis_named(words[0]);
+  const auto steps = base::parse_int<std::int32_t>(words[1]);
+  if (!axis || !steps) return std::nullopt;
+  return WorkcellEvent{StepsLost{.axis = *axis, .steps = *steps}};
+}
+
 ParsedDeed parse_surface(std::string_view /*name*/, Words words) {
   if (words.empty()) return std::nullopt;
   ProbeSurfaceMoved moved{.z_mm = base::parse_decimal(words[0])};
@@ -249,6 +257,7 @@ constexpr std::array kCommands{
     CommandRow{"reset", "reset [press|release]", parse_button},
     CommandRow{"limit", "limit X|Y|Z|A|B|C|U|V on|off", parse_limit},
     CommandRow{"switch", "switch X|Y|Z|A|B|C|U|V MM|none", parse_switch},
+    CommandRow{"lose", "lose X|Y|Z|A|B|C|U|V STEPS", parse_lose},
     CommandRow{"probe", "probe on|off|plug|unplug", parse_input},
     CommandRow{"surface", "surface Z|none [tilt X Y] [wave HEIGHT LENGTH]", parse_surface},
     CommandRow{"input", "input N on|off", parse_port},

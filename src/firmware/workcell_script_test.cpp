@@ -58,6 +58,8 @@ TEST(WorkcellScript, SwitchesAndButtons) {
   EXPECT_EQ(event<LimitHeld>("limit y on").axis, Axis::Y);
   EXPECT_EQ(event<HomingSwitchMoved>("switch Z 80.5").distance_mm, 80.5);
   EXPECT_EQ(event<HomingSwitchMoved>("switch Z none").distance_mm, std::nullopt);
+  EXPECT_EQ(event<StepsLost>("lose y -40").axis, Axis::Y);
+  EXPECT_EQ(event<StepsLost>("lose X -40").steps, -40);
 }
 
 TEST(WorkcellScript, PortsSpindleAndPendant) {

@@ -70,5 +70,14 @@ TEST(Workcell, TheWorldStaysWhereItIsWhenTheMotorsCountAgain) {
   EXPECT_TRUE(workcell.probe_at(AxisSteps{0, 0, -200}, machine()));
 }
 
+TEST(Workcell, AMotorThatDoesNotFollowMeetsItsSwitchLater) {
+  Workcell workcell;
+  workcell.apply(StepsLost{.axis = Axis::X, .steps = 40});
+  workcell.apply(StepsLost{.axis = Axis::Y, .steps = -7});
+  EXPECT_EQ(workcell.homing_switch_step(0, machine()), 20040);
+  EXPECT_EQ(workcell.homing_switch_step(1, machine()), -20007);
+  EXPECT_EQ(workcell.homing_switch_step(2, machine()), 5000);
+}
+
 }  // namespace
 }  // namespace kerf::firmware

@@ -218,5 +218,24 @@ TEST_P(VerbsByHand, AStopEndsMotionThatIsNoJob) {
   }
 }
 
+class Jogs : public testing::TestWithParam<Firmware> {};
+
+INSTANTIATE_TEST_SUITE_P(Firmwares, Jogs, testing::ValuesIn(kFirmwares),
+                         [](const auto& param) { return word_for(param.param); });
+
+TEST_P(Jogs, BehindACancelledOneTheNextOneMoves) {
+  World world{quick_serial(GetParam())};
+  ASSERT_TRUE(connect(world));
+  world.submit(session::Jog{"G21G91X50F3000"});
+  world.run_for(500ms);
+  world.submit(session::CancelJog{});
+  world.run_for(2s);
+  const double stopped_at = position_mm(world, 0);
+  EXPECT_LT(stopped_at, 49);
+  world.submit(session::Jog{"G21G91X5F3000"});
+  world.run_for(2s);
+  EXPECT_NEAR(position_mm(world, 0), stopped_at + 5, 0.005);
+}
+
 }  // namespace
 }  // namespace kerf::scenarios

@@ -59,4 +59,12 @@ struct Travel {
   return {.min_mm = -axis.length_mm, .max_mm = 0};
 }
 
+/// Where an axis stands behind homing, `axis.pull_off_mm` from its switch.
+[[nodiscard]] constexpr float home_of(TravelRule rule, const TravelFacts& axis) {
+  const Travel travel = travel_of(rule, axis);
+  const float end = axis.homes_to_minus ? travel.min_mm : travel.max_mm;
+  if (rule == TravelRule::HomedEnvelope) return end;
+  return axis.homes_to_minus ? end + axis.pull_off_mm : end - axis.pull_off_mm;
+}
+
 }  // namespace kerf::vocabulary

@@ -103,20 +103,27 @@ void for_each_command(std::string_view line, const Visit& visit) {
 
 std::optional<vocabulary::Travel> travel_of_axis(std::size_t axis, const Capabilities& capabilities,
                                                  const vocabulary::Dialect& dialect) {
+  auto facts = travel_facts(axis, capabilities);
+  if (!facts) return std::nullopt;
+  if (!is_setting_on(capabilities, kHardLimits)) facts->pull_off_mm = 0;
+  return travel_of(vocabulary::travel_rule_of(dialect.firmware), *facts);
+}
+
+std::optional<vocabulary::TravelFacts> travel_facts(std::size_t axis, const Capabilities& capabilities) {
   const auto length = setting_number(capabilities, kMaxTravel + static_cast<int>(axis));
   if (!length || *length <= 0) return std::nullopt;
-  const auto bits = [&](int id) {
-    constexpr double kMost = std::numeric_limits<unsigned>::max();
-    return static_cast<unsigned>(std::clamp(setting_number(capabilities, id).value_or(0), 0.0, kMost));
-  };
-  const bool has_hard_limits = (bits(kHardLimits) & 1U) != 0;
-  const double pull_off = has_hard_limits ? setting_number(capabilities, kHomingPullOff).value_or(0) : 0;
-  return travel_of(vocabulary::travel_rule_of(dialect.firmware),
-                   {.length_mm = static_cast<float>(*length),
-                    .homes_to_minus = ((bits(kHomingDirection) >> axis) & 1U) != 0,
-                    .switch_at_mm = static_cast<float>(switch_at_mm(axis, capabilities)),
-                    .pull_off_mm = static_cast<float>(pull_off),
-                    .zero_at_switch = ((bits(kHoming) >> kOriginZeroBit) & 1U) != 0});
+  return vocabulary::TravelFacts{
+      .length_mm = static_cast<float>(*length),
+      .homes_to_minus = is_setting_on(capabilities, kHomingDirection, static_cast<unsigned>(axis)),
+      .switch_at_mm = static_cast<float>(switch_at_mm(axis, capabilities)),
+      .pull_off_mm = static_cast<float>(setting_number(capabilities, kHomingPullOff).value_or(0)),
+      .zero_at_switch = is_setting_on(capabilities, kHoming, kOriginZeroBit)};
+}
+
+bool is_setting_on(const Capabilities& capabilities, int id, unsigned bit) {
+  constexpr double kMost = std::numeric_limits<unsigned>::max();
+  const auto bits = static_cast<unsigned>(std::clamp(setting_number(capabilities, id).value_or(0), 0.0, kMost));
+  return ((bits >> bit) & 1U) != 0;
 }
 
 std::string short_number(double value) {

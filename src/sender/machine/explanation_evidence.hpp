@@ -17,6 +17,12 @@ namespace kerf::machine {
 /// Value of a numbered setting, where `$$` told it.
 [[nodiscard]] std::optional<double> setting_number(const Capabilities& capabilities, int id);
 
+/// Whether a bit of a numbered setting is set; not where `$$` did not tell.
+[[nodiscard]] bool is_setting_on(const Capabilities& capabilities, int id, unsigned bit = 0);
+
+/// What the settings say about the travel of an axis, with the pull-off; empty where they do not tell.
+[[nodiscard]] std::optional<vocabulary::TravelFacts> travel_facts(std::size_t axis, const Capabilities& capabilities);
+
 /// Where an axis may go once it is homed; empty where the settings do not tell.
 [[nodiscard]] std::optional<vocabulary::Travel> travel_of_axis(std::size_t axis, const Capabilities& capabilities,
                                                                const vocabulary::Dialect& dialect);

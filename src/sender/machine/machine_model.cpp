@@ -172,7 +172,8 @@ void MachineModel::fold_spindles(const protocol::StatusReport& report) {
 
 void MachineModel::fold_inputs(const protocol::StatusReport& report) {
   snapshot_.pins = report.pins.value_or("");
-  const bool may_be_off = vocabulary::has(dialect_->report_mask_max, ReportBit::PinState);
+  // Grbl takes any byte for `$10`, but knows two bits of it only; grblHAL has this one, and has it on (protocol.md).
+  const bool may_be_off = vocabulary::has(dialect_->report_mask_default, ReportBit::PinState);
   const bool are_off = may_be_off && report_mask_ && !vocabulary::has(*report_mask_, ReportBit::PinState);
   snapshot_.inputs.reset();
   if (report.pins || !are_off) snapshot_.inputs = inputs_of(snapshot_.pins);

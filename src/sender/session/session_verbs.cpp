@@ -30,7 +30,7 @@ void Session::cancel_jog() {
   if (dialect().jog_cancel_flushes_rx)
     strike_out();
   else
-    cancels_owed_jogs_ = true;
+    cancels_owed_jogs_ = !ledger().empty();
 }
 
 void Session::on_jog_answered(const streaming::OwedLine& line) {
