@@ -65,6 +65,20 @@ TEST_P(Stalls, ALostAnswerIsProvenAndTheJobGoesOnWithoutSendingAnythingTwice) {
   EXPECT_NEAR(position_mm(*world, 1), 20, 0.005);
 }
 
+TEST_P(Stalls, AControllerThatStartedAgainUnseenIsNotTakenForOneThatLostAnswers) {
+  World world{quick_serial(GetParam())};
+  ASSERT_TRUE(start(world, zigzag(40), 1s));
+  ASSERT_TRUE(world.order("link silent"));
+  world.run_for(1min);
+  ASSERT_TRUE(world.order("reset"));
+  world.run_for(1s);
+  ASSERT_TRUE(world.order("link restore"));
+  static_cast<void>(world.run_until(is_held, 1min));
+  const auto& job = *world.session().job();
+  EXPECT_NE(job.phase, JobPhase::Finished);
+  EXPECT_FALSE(job.stall && job.stall->goes_on_at) << job.stall->headline;
+}
+
 TEST_P(Stalls, BehindALostAnswerTheJobIsNotOverBeforeItsLastLineIsSent) {
   std::unique_ptr<World> world;
   for (int attempt = 0; attempt < 400 && (!world || !lost_bytes(*world).contains(": ok\\r\\n")); ++attempt) {

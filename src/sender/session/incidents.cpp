@@ -19,6 +19,16 @@ bool is_evidence(streaming::Purpose purpose) {
   return purpose == streaming::Purpose::JobLine || purpose == streaming::Purpose::Operator;
 }
 
+/// What a start of the controller puts back shows that it started: spindle, feed, units and distances.
+bool may_be_modes_of(const machine::ParserModes& told, const gcode::ParserState& state) {
+  const auto agrees = [](const std::string& word, std::string_view otherwise, bool is_other) {
+    return word.empty() || (word != otherwise) == is_other;
+  };
+  const bool has_feed = !told.feed_mm_per_min || *told.feed_mm_per_min > 0 || state.feed_rate <= 0;
+  return has_feed && agrees(told.spindle, "M5", state.modal.spindle != gcode::SpindleDirection::Off) &&
+         agrees(told.units, "G21", state.modal.inches) && agrees(told.distance, "G90", state.modal.incremental);
+}
+
 IncidentLine line_of(const streaming::OwedLine& line, bool answered) {
   const bool is_system_line = line.text.starts_with('$');
   return {.file_line = line.file_line,
@@ -88,7 +98,8 @@ Incident Incidents::refused(int code, const streaming::OwedLine& line, const mac
 }
 
 std::optional<std::size_t> Incidents::lines_behind(const std::vector<streaming::OwedLine>& owed,
-                                                   const std::vector<double>& position_mm) const {
+                                                   const std::vector<double>& position_mm,
+                                                   const machine::ParserModes* told) const {
   // Steps round positions; less than this is no motion that matters.
   constexpr double kSamePlace_mm = 0.02;
   machine::LineTracker reader = tracker_;
@@ -97,7 +108,7 @@ std::optional<std::size_t> Incidents::lines_behind(const std::vector<streaming::
       const double at = static_cast<double>(reader.reader()->state().position_mm.at(axis));
       if (std::abs(at - position_mm[axis]) > kSamePlace_mm) return false;
     }
-    return true;
+    return told == nullptr || may_be_modes_of(*told, reader.reader()->state());
   };
   std::optional<std::size_t> behind;
   for (std::size_t count = 0;; ++count) {

@@ -31,9 +31,11 @@ class Incidents {
                                           const machine::Snapshot& before) const;
 
   /// Behind how many of `owed`, which follow the lines accepted so far, a machine at `position_mm` stands; empty where
-  /// that is not known or fits more than one.
+  /// that is not known or fits more than one. `told`: its modes, where it has just told them. A controller that started
+  /// again meanwhile stands there too, and has others.
   [[nodiscard]] std::optional<std::size_t> lines_behind(const std::vector<streaming::OwedLine>& owed,
-                                                        const std::vector<double>& position_mm) const;
+                                                        const std::vector<double>& position_mm,
+                                                        const machine::ParserModes* told) const;
 
   /// The alarm that holds the machine, as it was when it came.
   [[nodiscard]] const std::optional<machine::Incident>& alarm() const { return alarm_; }

@@ -90,7 +90,8 @@ void Session::hold_for_stall(Instant now, std::vector<OwedLine> lines, job::Stal
   facts.unanswered_s = stall_.unanswered_s(now);
   facts.proof = proof;
   if (snapshot().machine_position_mm) {
-    facts.executed_lines = incidents_.lines_behind(lines, *snapshot().machine_position_mm);
+    facts.executed_lines = incidents_.lines_behind(lines, *snapshot().machine_position_mm,
+                                                   proof == job::StallProof::LinesRead ? &snapshot().modes : nullptr);
     const auto executed = facts.executed_lines.value_or(lines.size());
     if (executed < lines.size()) facts.first_not_executed = lines[executed].file_line;
     if (executed == lines.size()) {
