@@ -135,4 +135,14 @@ std::optional<std::vector<InjectedByte>> parse_injections(const std::vector<std:
   return bytes;
 }
 
+std::optional<simulation::ProgramLink> parse_link(const std::string& text) {
+  if (text == "saturated") return simulation::ProgramLink{};
+  const auto baud = base::parse_int<int>(text);
+  if (!baud || *baud <= 0) {
+    complain(fmt::format("'{}' is no link: write 'saturated', or a baud rate such as 115200.", text));
+    return std::nullopt;
+  }
+  return simulation::ProgramLink{.baud = baud};
+}
+
 }  // namespace kerf::apps

@@ -1,5 +1,6 @@
 #pragma once
-// The machine that `kerf conform` and `kerf simulate` run things on, from what the command line says about it.
+// The machine that `kerf conform`, `kerf simulate` and `kerf estimate` run things on, from what the command line says
+// about it.
 
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "apps/commands.hpp"
 #include "simulation/case_runner.hpp"
+#include "simulation/motion_trace.hpp"
 
 namespace kerf::apps {
 
@@ -19,5 +21,8 @@ namespace kerf::apps {
 /// All of them; says which one is wrong.
 [[nodiscard]] std::optional<std::vector<simulation::InjectedByte>> parse_injections(
     const std::vector<std::string>& texts);
+
+/// `saturated`, or a baud rate; says what is wrong.
+[[nodiscard]] std::optional<simulation::ProgramLink> parse_link(const std::string& text);
 
 }  // namespace kerf::apps

@@ -200,6 +200,16 @@ struct SimulateOptions {
 };
 [[nodiscard]] ExitStatus simulate(const SimulateOptions& options);
 
+struct EstimateOptions {
+  std::string file;
+  CaseMachineOptions virtual_machine;
+  std::string machine;  ///< not empty: asked for its firmware and settings
+  std::string link = "saturated";
+  bool json = false;
+  io::RecordingOptions recording{};
+};
+[[nodiscard]] ExitStatus estimate(const EstimateOptions& options);
+
 struct RecordOptions {
   std::string machine = kDefaultMachine;
   bool listens = false;        ///< send nothing at all

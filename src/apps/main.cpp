@@ -230,6 +230,27 @@ void add_simulate(CLI::App& kerf, Chosen& chosen) {
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::simulate(*options); }; });
 }
 
+void add_estimate(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::EstimateOptions>();
+  CLI::App* command = kerf.add_subcommand("estimate", "Say how long a job takes, and what the time is spent on");
+  command->add_option("FILE", options->file, "The G-code file")->required()->type_name("");
+  add_case_machine(*command, options->virtual_machine);
+  command->add_option("-m,--machine", options->machine, "Ask this machine for its firmware and settings; nothing moves")
+      ->type_name("URL")
+      ->excludes("--personality")
+      ->excludes("--settings");
+  add_recording(*command, options->recording);
+  command
+      ->add_option("--link", options->link,
+                   "Also say what becomes of it over a serial port of this baud rate, and where the machine waits for "
+                   "lines")
+      ->type_name("saturated|BAUD")
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "Print the result as one JSON object");
+  command->footer("\nExit status 3: lines would be refused, or the job would not reach its end.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::estimate(*options); }; });
+}
+
 void add_record(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::RecordOptions>();
   CLI::App* command = kerf.add_subcommand("record", "Watch a machine and write down what is said, until Ctrl-C");
@@ -339,6 +360,7 @@ int start(int argc, char** argv) {
   add_verify(kerf, chosen);
   add_conform(kerf, chosen);
   add_simulate(kerf, chosen);
+  add_estimate(kerf, chosen);
   add_record(kerf, chosen);
   add_log(kerf, chosen);
   add_replay(kerf, chosen);

@@ -11,7 +11,6 @@
 #include "apps/case_machine.hpp"
 #include "apps/commands.hpp"
 #include "apps/output.hpp"
-#include "common/base/text.hpp"
 #include "io/json.hpp"
 #include "io/text_file.hpp"
 #include "simulation/motion_trace.hpp"
@@ -22,16 +21,6 @@ namespace {
 using io::Json;
 using simulation::MotionTrace;
 using simulation::ProgramRun;
-
-std::optional<simulation::ProgramLink> parse_link(const std::string& text) {
-  if (text == "saturated") return simulation::ProgramLink{};
-  const auto baud = base::parse_int<int>(text);
-  if (!baud || *baud <= 0) {
-    complain(fmt::format("'{}' is no link: write 'saturated', or a baud rate such as 115200.", text));
-    return std::nullopt;
-  }
-  return simulation::ProgramLink{.baud = baud};
-}
 
 std::optional<ProgramRun> load_run(const SimulateOptions& options) {
   const auto link = parse_link(options.link);

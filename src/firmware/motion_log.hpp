@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <deque>
+#include <optional>
 
 #include "common/base/time.hpp"
 #include "common/motion/planner.hpp"
@@ -18,6 +19,7 @@ struct PlannedMove {
   std::uint32_t line = 0;
   float length_mm = 0;
   float rate_mm_per_min = 0;
+  bool rapid = false;
 };
 
 /// From the first step of a block to its end, or to the rest that came before. What is left of a block after a hold
@@ -28,7 +30,13 @@ struct ExecutedStretch {
   vocabulary::AxisSteps end_steps{};
 };
 
-/// Grows without bound while a controller keeps it, unless it only counts.
+/// What a block was meant to be, and what became of it.
+struct FinishedMove {
+  PlannedMove planned{};
+  ExecutedStretch executed{};
+};
+
+/// Grows without bound while a controller keeps it, unless it only counts or somebody takes what is finished.
 class MotionLog {
  public:
   enum class Keeps : std::uint8_t { Blocks, Counts };
@@ -38,7 +46,10 @@ class MotionLog {
   void planned(std::uint32_t line, const motion::PlannedBlock& block) {
     ++planned_;
     if (keeps_ == Keeps::Counts) return;
-    moves_.push_back({.line = line, .length_mm = block.length_mm, .rate_mm_per_min = block.programmed_rate});
+    moves_.push_back({.line = line,
+                      .length_mm = block.length_mm,
+                      .rate_mm_per_min = block.programmed_rate,
+                      .rapid = block.feed.rapid});
   }
   void began(Instant at) {
     ++executed_;
@@ -55,11 +66,24 @@ class MotionLog {
     stretches_.back().end_steps = steps;
   }
 
+  /// The oldest block whose motion is over; it is forgotten here.
+  [[nodiscard]] std::optional<FinishedMove> take_finished() {
+    const bool is_over = stretches_.size() > 1 || !is_open_;
+    return is_over ? take_begun() : std::nullopt;
+  }
+  /// The oldest block that has begun, over or not.
+  [[nodiscard]] std::optional<FinishedMove> take_begun() {
+    if (moves_.empty() || stretches_.empty()) return std::nullopt;
+    const FinishedMove taken{.planned = moves_.front(), .executed = stretches_.front()};
+    moves_.pop_front();
+    stretches_.pop_front();
+    return taken;
+  }
+
   /// Blocks that were planned and have begun.
   [[nodiscard]] std::size_t blocks() const { return std::min(planned_, executed_); }
-  /// Empty if only counts are kept, as are the stretches.
-  [[nodiscard]] const std::vector<PlannedMove>& moves() const { return moves_; }
-  [[nodiscard]] const std::vector<ExecutedStretch>& stretches() const { return stretches_; }
+  /// Empty if only counts are kept.
+  [[nodiscard]] const std::deque<ExecutedStretch>& stretches() const { return stretches_; }
   /// When the steppers came to rest, or finished a block, for the last time.
   [[nodiscard]] Instant last_end() const { return last_end_; }
 
@@ -67,8 +91,8 @@ class MotionLog {
   Keeps keeps_;
   std::size_t planned_ = 0;
   std::size_t executed_ = 0;
-  std::vector<PlannedMove> moves_;
-  std::vector<ExecutedStretch> stretches_;
+  std::deque<PlannedMove> moves_;
+  std::deque<ExecutedStretch> stretches_;
   Instant last_end_{};
   bool is_open_ = false;
 };

@@ -8,6 +8,7 @@
 #include "common/base/overloaded.hpp"
 #include "common/base/text.hpp"
 #include "common/protocol/decode.hpp"
+#include "common/vocabulary/realtime.hpp"
 #include "firmware/virtual_controller.hpp"
 #include "simulation/standstill.hpp"
 #include "simulation/switched_on.hpp"
@@ -120,12 +121,13 @@ class TraceRun {
   TraceRun(const ProgramRun& run, const CaseMachine& machine)
       : run_(run),
         controller_(machine.personality, machine.stored),
-        feeder_(as_sent(run.program), run.link, window_of(machine.personality.firmware)) {
+        feeder_(as_sent(run.program), run.link, window_of(machine.personality.firmware)),
+        wants_blocks_(run.keeps_blocks || run.on_block) {
     for (const auto& event : machine.workcell) controller_.submit(now_, event);
     if (machine.personality.full_buffer_drops_realtime) kept_free_ = kRoomForRealtime;
     switch_on(controller_, now_, machine.told);
     using Keeps = firmware::MotionLog::Keeps;
-    controller_.keep_motion_log(run.keeps_blocks ? Keeps::Blocks : Keeps::Counts);
+    log_ = &controller_.keep_motion_log(wants_blocks_ ? Keeps::Blocks : Keeps::Counts);
     const std::string sent = as_sent(run.program);
     trace_.lines = static_cast<std::uint32_t>(std::ranges::count(sent, '\n'));
     next_sample_ = run.sample_every ? Instant{} : kNever;
@@ -136,12 +138,16 @@ class TraceRun {
     feed();
     for (;;) {
       const Instant next = next_instant();
+      if (next == kNever && goes_on()) continue;
       if (next == kNever || standstill.lasts(controller_, trace_.lines_answered)) break;
       sample_before(next);
       now_ = std::max(now_, next);
       controller_.advance_to(now_);
       inject();
       feed();
+      if (wants_blocks_) {
+        while (const auto finished = log_->take_finished()) tell(*finished);
+      }
     }
     finish();
     return std::move(trace_);
@@ -155,6 +161,32 @@ class TraceRun {
   }
 
   [[nodiscard]] bool is_over() const { return trace_.lines_answered >= trace_.lines; }
+
+  /// The operator presses Cycle Start, unless that did not help a moment ago.
+  bool goes_on() {
+    using vocabulary::MachineState;
+    const MachineState state = controller_.state();
+    const bool waits = state == MachineState::Hold || state == MachineState::Tool;
+    const std::uint32_t line = trace_.lines_answered + 1;
+    if (!run_.operator_goes_on || !waits || (!trace_.stops.empty() && trace_.stops.back() == line)) return false;
+    trace_.stops.push_back(line);
+    const auto start = static_cast<char>(vocabulary::Realtime::CycleStart);
+    controller_.on_bytes(now_, std::string_view{&start, 1});
+    feed();
+    return true;
+  }
+
+  void tell(const firmware::FinishedMove& move) {
+    const BlockTrace block{.line = move.planned.line,
+                           .start_s = base::to_seconds(move.executed.began - Instant{}),
+                           .end_s = base::to_seconds(move.executed.ended - Instant{}),
+                           .length_mm = static_cast<double>(move.planned.length_mm),
+                           .rate_mm_per_min = static_cast<double>(move.planned.rate_mm_per_min),
+                           .rapid = move.planned.rapid,
+                           .end_steps = move.executed.end_steps};
+    if (run_.on_block) run_.on_block(block);
+    if (run_.keeps_blocks) trace_.blocks.push_back(block);
+  }
 
   [[nodiscard]] Instant next_injection() const {
     return injected_ < run_.inject.size() ? Instant{} + run_.inject[injected_].after : kNever;
@@ -217,27 +249,15 @@ class TraceRun {
   [[nodiscard]] std::vector<std::int32_t> steps() const { return shortened(controller_.position_steps()); }
 
   void finish() {
-    const firmware::MotionLog& log = controller_.motion_log();
-    const Instant end = std::max(log.last_end(), last_answer_);
+    const Instant end = std::max(log_->last_end(), last_answer_);
     trace_.total_s = base::to_seconds(end - Instant{});
     if (run_.sample_every) {
       while (next_sample_ < end + *run_.sample_every) take_sample();
     }
     trace_.final_steps = steps();
     trace_.final_mm = controller_.position_mm();
-    trace_.block_count = log.blocks();
-    const std::size_t count = std::min(log.moves().size(), log.stretches().size());
-    trace_.blocks.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const firmware::PlannedMove& move = log.moves()[i];
-      const firmware::ExecutedStretch& stretch = log.stretches()[i];
-      trace_.blocks.push_back({.line = move.line,
-                               .start_s = base::to_seconds(stretch.began - Instant{}),
-                               .end_s = base::to_seconds(stretch.ended - Instant{}),
-                               .length_mm = static_cast<double>(move.length_mm),
-                               .rate_mm_per_min = static_cast<double>(move.rate_mm_per_min),
-                               .end_steps = stretch.end_steps});
-    }
+    trace_.block_count = log_->blocks();
+    while (const auto begun = log_->take_begun()) tell(*begun);
   }
 
   const ProgramRun& run_;
@@ -245,6 +265,8 @@ class TraceRun {
   /// Rabbit loses realtime bytes that meet a full buffer: a sender that keeps it full leaves room for them.
   std::size_t kept_free_ = 0;
   Feeder feeder_;
+  bool wants_blocks_;
+  firmware::MotionLog* log_ = nullptr;
   MotionTrace trace_;
   Instant now_{};
   Instant last_answer_{};

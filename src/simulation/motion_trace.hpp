@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,16 +21,6 @@ struct ProgramLink {
   std::optional<int> baud;
 };
 
-struct ProgramRun {
-  std::string program;
-  ProgramLink link{};
-  /// Counted from the first byte of the program.
-  std::vector<InjectedByte> inject{};
-  std::optional<Duration> sample_every{};
-  /// False: blocks are only counted; there may be millions.
-  bool keeps_blocks = true;
-};
-
 /// One block, in the order of execution. `line`, `length_mm` and `rate_mm_per_min` are those of the block that was
 /// planned at this place in the order; a block that a hold interrupts has its end where the machine came to rest.
 struct BlockTrace {
@@ -38,8 +29,23 @@ struct BlockTrace {
   double end_s = 0;
   double length_mm = 0;
   double rate_mm_per_min = 0;
+  bool rapid = false;
   /// Axes that the machine lacks stay 0; an array, because there may be millions of blocks.
   vocabulary::AxisSteps end_steps{};
+};
+
+struct ProgramRun {
+  std::string program;
+  ProgramLink link{};
+  /// Counted from the first byte of the program.
+  std::vector<InjectedByte> inject{};
+  std::optional<Duration> sample_every{};
+  /// False: blocks are only counted; there may be millions.
+  bool keeps_blocks = true;
+  /// Is given each block when its motion is over, whether it is kept or not.
+  std::function<void(const BlockTrace&)> on_block{};
+  /// Somebody presses Cycle Start at once whenever the program waits for that.
+  bool operator_goes_on = false;
 };
 
 struct PositionSample {
@@ -60,7 +66,7 @@ struct MotionTrace {
   std::uint32_t lines_answered = 0;
   std::uint32_t lines = 0;
   std::size_t block_count = 0;
-  /// Empty if they are only counted.
+  /// Empty if they are not kept.
   std::vector<BlockTrace> blocks;
   std::vector<PositionSample> positions;
   std::vector<std::int32_t> final_steps;
@@ -68,6 +74,8 @@ struct MotionTrace {
   std::vector<RefusedLine> errors;
   /// Numbers behind `ALARM:`.
   std::vector<int> alarms;
+  /// Lines at which the program waited for Cycle Start.
+  std::vector<std::uint32_t> stops;
 };
 
 /// Runs the program to its end, or until the machine waits for something that never comes. Blank lines count, and line

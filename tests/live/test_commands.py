@@ -31,6 +31,30 @@ class Describe(LiveTest):
             self.assertIn(words, result.stdout)
 
 
+class Estimate(LiveTest):
+    PART = "G21 G90\n(Toolpath:- Slot)\nT1\nG0 X5\nG1 Z-1 F300\nX25 F900\nM0\nG0 Z5\nM30\n"
+
+    def test_total_is_that_of_the_simulation(self):
+        part = self.file("part.nc", self.PART.replace("M0\n", ""))
+        for personality in PERSONALITIES:
+            with self.subTest(personality):
+                totals = [json.loads(kerf(command, part, "-p", personality, "--json").stdout)["total_s"]
+                          for command in ("estimate", "simulate")]
+                self.assertEqual(*totals)
+
+    def test_tells_operations_stops_and_a_slow_link(self):
+        part = self.file("part.nc", self.PART)
+        result = kerf("estimate", part, "--machine", "virtual:grbl", "--link", "115200")
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        for words in ("Slot", "waits for the operator at line 7", "keeps the planner full"):
+            self.assertIn(words, result.stdout)
+
+    def test_refused_lines_are_named(self):
+        result = kerf("estimate", self.file("part.nc", "G21\nG99.7\n"))
+        self.assertEqual(result.returncode, REFUSED, result.stderr)
+        self.assertIn("Line 2 would be refused: error:20", result.stdout)
+
+
 class Console(LiveTest):
     def test_from_a_pipe(self):
         result = kerf("console", "--machine", "virtual:grbl", text="$G\n?\nG99\n")

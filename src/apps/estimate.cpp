@@ -1,0 +1,215 @@
+// `kerf estimate`: how long a program takes on this machine, and what the time is spent on.
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <ranges>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/case_machine.hpp"
+#include "apps/commands.hpp"
+#include "apps/inquiry.hpp"
+#include "apps/output.hpp"
+#include "apps/progress_text.hpp"
+#include "io/json.hpp"
+#include "io/program_file.hpp"
+#include "simulation/job_estimate.hpp"
+#include "simulation/machine_like.hpp"
+
+namespace kerf::apps {
+namespace {
+
+using io::Json;
+using simulation::CaseMachine;
+using simulation::JobEstimate;
+using simulation::LostTime;
+using simulation::PartEstimate;
+
+constexpr std::size_t kMostShown = 12;
+
+/// What is true of the machine, and of the link to it.
+struct Grades {
+  JobEstimate planner;
+  /// Only where a link was named.
+  std::optional<JobEstimate> world{};
+  std::vector<LostTime> losses{};
+};
+
+std::optional<CaseMachine> machine_of(const EstimateOptions& options) {
+  if (options.machine.empty()) return load_case_machine(options.virtual_machine);
+  std::optional<CaseMachine> machine;
+  const ExitStatus status = visit(options.machine, {.recording = options.recording}, [&](const io::SessionHost& host) {
+    const auto& known = host.session().capabilities();
+    if (known.family == vocabulary::Firmware::Unknown) {
+      complain("This firmware is not known, so nobody can say how it moves. Name one with --personality.");
+    } else {
+      machine.emplace(simulation::machine_like(known));
+    }
+  });
+  return status == ExitStatus::Done ? machine : std::nullopt;
+}
+
+Grades grades_of(const job::Program& program, const CaseMachine& machine, simulation::ProgramLink link) {
+  Grades grades{.planner = simulation::estimate_job(program, machine)};
+  if (link.baud) {
+    grades.world = simulation::estimate_job(program, machine, link);
+    grades.losses = simulation::lost_on_the_link(grades.planner, *grades.world);
+  }
+  return grades;
+}
+
+/// Microseconds and micrometres are more than anybody needs.
+double rounded(double value) {
+  constexpr double kMillion = 1e6;
+  return std::round(value * kMillion) / kMillion;
+}
+
+Json refused_json(const JobEstimate& estimate) {
+  Json refused = Json::array();
+  for (const auto& error : estimate.errors) refused.push_back({{"line", error.line}, {"code", error.code}});
+  return refused;
+}
+
+Json as_json(const Grades& grades) {
+  const JobEstimate& planner = grades.planner;
+  Json json = Json::object();
+  json["total_s"] = rounded(planner.total_s);
+  json["grade"] = "planner";
+  if (grades.world) {
+    Json world = Json::object();
+    world["total_s"] = rounded(grades.world->total_s);
+    world["lost"] = io::to_json(grades.losses);
+    json["world"] = std::move(world);
+  }
+  json["use"] = io::to_json(planner.use);
+  json["cutting_mm"] = rounded(planner.cutting_mm);
+  json["rapid_mm"] = rounded(planner.rapid_mm);
+  json["tools"] = io::to_json(planner.tools);
+  json["operations"] = io::to_json(planner.operations);
+  json["feeds"] = io::to_json(planner.feeds);
+  json["stops"] = planner.stops;
+  json["refused"] = refused_json(planner);
+  json["alarms"] = planner.alarms;
+  json["blocks"] = planner.blocks;
+  json["lines"] = planner.lines;
+  json["lines_answered"] = planner.lines_answered;
+  return json;
+}
+
+std::string metres(double mm) {
+  constexpr double kMetre = 1000.0;
+  return mm < kMetre ? fmt::format("{:.0f} mm", mm) : fmt::format("{:.2f} m", mm / kMetre);
+}
+
+void tell_share(std::string_view name, double seconds, double total_s, const std::string& more = {}) {
+  constexpr double kNothing_s = 0.5;
+  if (seconds < kNothing_s) return;
+  put("  {:<12} {:>9}  {:>3.0f} %{}\n", name, clock_text(seconds), seconds / total_s * 100.0, more);
+}
+
+/// In one column, however long CAM programs make it.
+std::string shown_name(const std::string& name) {
+  constexpr std::size_t kWidth = 36;
+  constexpr std::string_view kCut = "...";
+  if (name.empty()) return "(before the first)";
+  if (name.size() <= kWidth) return name;
+  // Not within a letter of UTF-8.
+  constexpr unsigned kKind = 0xC0;
+  constexpr unsigned kContinues = 0x80;
+  std::size_t end = kWidth - kCut.size();
+  while (end > 0 && (static_cast<unsigned char>(name[end]) & kKind) == kContinues) --end;
+  return name.substr(0, end).append(kCut);
+}
+
+void tell_parts(std::string_view title, const std::vector<PartEstimate>& parts, double total_s) {
+  if (std::ranges::count_if(parts, [](const PartEstimate& part) { return !part.name.empty(); }) == 0) return;
+  put("{}\n", title);
+  for (const PartEstimate& part : parts | std::views::take(kMostShown)) {
+    put("  {:<36} {:>9}  {:>3.0f} %  {} cut, lines {} to {}\n", shown_name(part.name), clock_text(part.total_s),
+        part.total_s / total_s * 100.0, metres(part.cutting_mm), part.first_line, part.last_line);
+  }
+  if (parts.size() > kMostShown) put("  and {} more: --json has them all\n", parts.size() - kMostShown);
+}
+
+void tell_feeds(const JobEstimate& estimate) {
+  if (estimate.feeds.size() < 2) return;
+  put("Programmed feeds\n");
+  for (const auto& bin : estimate.feeds) {
+    put("  from {:>6.0f} mm/min {:>9}  {} cut\n", bin.from_mm_per_min, clock_text(bin.total_s), metres(bin.cutting_mm));
+  }
+}
+
+void tell_world(const Grades& grades, const std::string& link) {
+  if (!grades.world) return;
+  const double more_s = grades.world->total_s - grades.planner.total_s;
+  put("At {} baud: {} ({:+.1f} s).\n", link, clock_text(grades.world->total_s), more_s);
+  if (grades.losses.empty()) {
+    put("  This link keeps the planner full.\n");
+    return;
+  }
+  put("  This link cannot keep the planner full; the machine slows down, or waits for lines, here:\n");
+  for (const LostTime& loss : grades.losses | std::views::take(kMostShown)) {
+    put("  lines {} to {}: {:.1f} s\n", loss.first_line, loss.last_line, loss.lost_s);
+  }
+}
+
+void tell_trouble(const JobEstimate& estimate, std::uint32_t lines) {
+  if (!estimate.stops.empty()) {
+    put("It waits for the operator at line{} {}; that time is not counted.\n", estimate.stops.size() > 1 ? "s" : "",
+        fmt::join(estimate.stops | std::views::take(kMostShown), ", "));
+  }
+  for (const auto& refused : estimate.errors | std::views::take(kMostShown)) {
+    put("Line {} would be refused: error:{} (kerf errors {}).\n", refused.line, refused.code, refused.code);
+  }
+  if (estimate.errors.size() > kMostShown) put("And {} more lines.\n", estimate.errors.size() - kMostShown);
+  for (const int alarm : estimate.alarms) put("ALARM:{} would end the job (kerf alarms {}).\n", alarm, alarm);
+  if (estimate.lines_answered < estimate.lines) put("It stops behind line {} of {}.\n", estimate.lines_answered, lines);
+}
+
+void tell(const Grades& grades, const EstimateOptions& options, const job::Program& program) {
+  const JobEstimate& planner = grades.planner;
+  put("{} takes {} with the planner kept full.\n", options.file, clock_text(planner.total_s));
+  const double total_s = std::max(planner.total_s, 1e-9);
+  tell_share("cutting", planner.use.cutting_s, total_s, "  " + metres(planner.cutting_mm));
+  tell_share("rapid", planner.use.rapid_s, total_s, "  " + metres(planner.rapid_mm));
+  tell_share("dwell", planner.use.dwell_s, total_s);
+  tell_share("tool change", planner.use.tool_change_s, total_s);
+  tell_share("standing", planner.use.other_s, total_s);
+  tell_parts("Tools", planner.tools, total_s);
+  tell_parts("Operations", planner.operations, total_s);
+  tell_feeds(planner);
+  tell_world(grades, options.link);
+  tell_trouble(planner, program.line_count());
+}
+
+bool runs_through(const JobEstimate& estimate) {
+  return estimate.errors.empty() && estimate.alarms.empty() && estimate.lines_answered == estimate.lines;
+}
+
+}  // namespace
+
+ExitStatus estimate(const EstimateOptions& options) {
+  const auto link = parse_link(options.link);
+  if (!link) return ExitStatus::Usage;
+  const auto file = io::ProgramFile::load(options.file);
+  if (!file) {
+    complain(io::explain(file.error(), options.file));
+    return ExitStatus::Usage;
+  }
+  const auto machine = machine_of(options);
+  if (!machine) return options.machine.empty() ? ExitStatus::Usage : ExitStatus::NoConnection;
+  const job::Program& program = *file->program();
+  const Grades grades = grades_of(program, *machine, *link);
+  if (options.json) {
+    put("{}\n", io::print(as_json(grades)));
+  } else {
+    tell(grades, options, program);
+  }
+  return runs_through(grades.planner) ? ExitStatus::Done : ExitStatus::Refused;
+}
+
+}  // namespace kerf::apps
