@@ -136,6 +136,12 @@ TEST_P(Stalls, ADeadLinkIsNamedAndOverWhenItAnswers) {
   EXPECT_EQ(told<session::JobStalled>(world)[0].stall.cause, StallCause::DeadLink);
   ASSERT_TRUE(world.session().job()->stall);
   EXPECT_EQ(world.session().job()->stall->cause, StallCause::DeadLink);
+  const auto jobs = world.journal().jobs();
+  ASSERT_THAT(jobs, SizeIs(1));
+  const auto noted =
+      std::ranges::find(jobs[0].notes, job::NoteKind::Stalled, [](const auto& at) { return at.note.kind; });
+  ASSERT_NE(noted, jobs[0].notes.end());
+  EXPECT_EQ(noted->note.text, told<session::JobStalled>(world)[0].stall.headline);
 }
 
 TEST_P(Stalls, WhatTheMachineWaitsForIsNamedWithoutAlarm) {

@@ -145,6 +145,8 @@ class Job {
   /// The operator, or the policy, has decided to go on without the refused line.
   bool goes_on_ = false;
   Waiting waiting_ = Waiting::ForLines;
+  /// In the last report, while it waits for the end of a tool change.
+  bool was_idle_ = false;
   bool feeding_ = true;
   bool resumable_ = false;
   bool hold_ordered_ = false;

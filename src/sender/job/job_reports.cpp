@@ -1,6 +1,7 @@
 // A job as the machine's reports tell it: what holds it, whether it obeys, and when it rests.
 
 #include <chrono>
+#include <utility>
 
 #include "sender/job/job.hpp"
 #include "sender/machine/rest.hpp"
@@ -61,6 +62,7 @@ void Job::follow_motion(Instant now, const machine::Snapshot& snapshot, std::str
   const bool may_hold = state_.phase != JobPhase::Draining;
   if (!may_hold) resumable_ = machine::can_resume(snapshot);
   const bool rests = machine::is_at_rest(snapshot);
+  if (snapshot.state != MachineState::Idle) was_idle_ = false;
   switch (snapshot.state) {
     case MachineState::Hold:
       if (!may_hold || now < deaf_to_hold_until_ || waits_while_idle()) return;
@@ -88,7 +90,10 @@ void Job::follow_motion(Instant now, const machine::Snapshot& snapshot, std::str
       [[fallthrough]];
     case MachineState::Idle:
       if (waits_while_idle()) return;
-      if (waiting_ == Waiting::ForToolState && now - tool_line_answered_at_ >= kToolStateDelay) follow_tool_gate(now);
+      if (waiting_ == Waiting::ForToolState && now - tool_line_answered_at_ >= kToolStateDelay) {
+        if (std::exchange(was_idle_, true)) follow_tool_gate(now);
+        break;
+      }
       if (waiting_ == Waiting::ForRest && !hold_ordered_) return follow_rest(now);
       break;
     default: break;
@@ -111,11 +116,12 @@ void Job::follow_rest(Instant now) {
                                       " left out, the last is line " + std::to_string(state_.refusal->file_line) + ".");
 }
 
-// The controller has left its Tool state, or never entered it.
+// The controller has left its Tool state, or never entered it; on its way back it may be idle between two motions.
 void Job::follow_tool_gate(Instant now) {
   terms_.flow->pass_gate();
   state_.tool_change.reset();
   waiting_ = Waiting::ForLines;
+  was_idle_ = false;
   enter(now, JobPhase::Running);
 }
 

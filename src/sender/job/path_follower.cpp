@@ -48,6 +48,11 @@ bool is_unknown(const PathPiece& piece, std::size_t axis) {
   return (piece.unknown_axes >> axis & 1U) != 0;
 }
 
+bool is_nowhere(const PathPiece& piece, std::size_t axes) {
+  const auto all = (1U << axes) - 1;
+  return (piece.unknown_axes & all) == all;
+}
+
 /// The part of a piece that lies within a distance of a place, and its nearest point.
 struct Overlap {
   double from = 1;
@@ -142,10 +147,24 @@ void PathFollower::begin(Instant now, const AxisValues& start_mm, const PathRule
   *this = {};
   rules_ = rules;
   loss_ = before;
-  loss_.begin(path, kRoundings * (rules.reports_inches ? kLastDigitInchMm : kLastDigitMm) + kFloatMm);
+  loss_.round_by(kRoundings * (rules.reports_inches ? kLastDigitInchMm : kLastDigitMm) + kFloatMm);
+  loss_.begin(path);
   reported_mm_ = start_mm;
   made_after_ = now;
   override_changed_ = now;
+}
+
+void PathFollower::stand(Instant now, const PathForecast& forecast) {
+  const PathPiece& rest = forecast.pieces().front();
+  first_ = last_ = confirmed_ = {.piece = forecast.first_piece(), .part = 0};
+  last_s_ = rest.reached_s;
+  reaches_end_ = is_lost_ = false;
+  impossible_ = early_ = strange_speeds_ = 0;
+  line_by_number_.reset();
+  reported_mm_ = rest.start_mm;
+  made_after_ = now;
+  // Moving by itself a controller counts steps anew, or goes on with what it has lost.
+  loss_.begin(forecast.rules());
 }
 
 double PathFollower::limit_s(const PathReport& report) const {
@@ -161,6 +180,11 @@ PathFollower::Fit PathFollower::fit(const PathForecast& forecast, const AxisValu
   Fit found;
   found.distance_mm = kUnlimited;
   std::uint64_t number = std::max(first_.piece, forecast.first_piece());
+  // Where nothing is known every place fits: answers tell when that is over.
+  while (number < forecast.surely_over() && number + 1 < forecast.first_piece() + pieces.size() &&
+         is_nowhere(pieces[static_cast<std::size_t>(number - forecast.first_piece())], axes)) {
+    ++number;
+  }
   for (; number < forecast.first_piece() + pieces.size(); ++number) {
     const PathPiece& piece = pieces[static_cast<std::size_t>(number - forecast.first_piece())];
     if (piece.reached_s > limit) return found;

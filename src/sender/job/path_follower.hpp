@@ -87,6 +87,8 @@ class PathFollower {
  public:
   /// `start_mm`: where the machine stands, machine coordinates.
   void begin(Instant now, const AxisValues& start_mm, const PathRules& path, const FollowerRules& rules);
+  /// The forecast knows the place again: the machine rests there (PathForecast::stand).
+  void stand(Instant now, const PathForecast& forecast);
   /// Empty when the report fits, and where the path is not known. Forgets pieces that are behind.
   [[nodiscard]] std::optional<PathDeparture> on_report(PathForecast& forecast, PathReport report);
   /// Motion that the program does not know of (a door, parking): speeds are not compared until it is back.

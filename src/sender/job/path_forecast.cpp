@@ -19,6 +19,8 @@ namespace {
 constexpr float kSamePlace = 1e-4F;
 /// A machine at rest is seen where its last line leads, but for the last digit and half a step.
 constexpr float kSeenAt = 0.01F;
+/// Two roundings of the last digit that is printed, of inches at worst.
+constexpr float kSameOffset = 0.0026F;
 /// How far apart two readers are set to find out what depends on an unknown place.
 constexpr float kDoubt = 1.0F;
 constexpr std::size_t kZ = 2;
@@ -160,7 +162,11 @@ std::optional<std::string_view> PathForecast::read(SentLine& line, std::string_v
   text = as_read(text);
   if (text.empty() || text.starts_with('$')) return std::nullopt;
   actions_.clear();
+  const auto before = knows_only_sum_ ? std::optional{reader_->offsets()} : std::nullopt;
+  const std::uint8_t selected = reader_->state().modal.work_offset;
   if (!reader_->interpret(text, actions_)) return "Kerf does not understand it";
+  if (before && (*before != reader_->offsets() || selected != reader_->state().modal.work_offset))
+    return "it changes offsets of which Kerf knows only the sum since they were set by hand";
   if (reader_->state().modal_macro) return "it calls a macro";
   const auto length = reader_->state().modal.tool_length;
   const bool from_table = length == gcode::ToolLengthMode::FromTable || length == gcode::ToolLengthMode::Additional;
@@ -208,15 +214,13 @@ std::optional<std::string_view> PathForecast::add(const gcode::Action& action, s
                    pieces_.back().least_s = 0;
                    pieces_.back().feed_mm_per_min = 0;
                    reached_s_ = before_s;
-                   begin_doubt(move.start_mm, false);
+                   begin_doubt(move.start_mm);
                  },
                  [&](const gcode::ToolChange&) {
                    add_pause(line.file_line);
                    reader_->complete_tool_change();
                    if (shadow_) shadow_->complete_tool_change();
-                   AxisValues elsewhere = at_mm_;
-                   for (float& mm : elsewhere) mm += kDoubt;
-                   begin_doubt(elsewhere, true);
+                   begin_tool_doubt();
                  },
                  [&](const gcode::Dwell&) { add_pause(line.file_line); },
                  [&](const gcode::ProgramPause&) { add_pause(line.file_line); },
@@ -235,7 +239,7 @@ std::optional<std::string_view> PathForecast::add(const gcode::Action& action, s
   return reason;
 }
 
-void PathForecast::begin_doubt(const AxisValues& from_mm, bool offsets_too) {
+void PathForecast::begin_doubt(const AxisValues& from_mm) {
   reader_->sync_position(at_mm_);
   AxisValues other = from_mm;
   if (shadow_) {
@@ -247,11 +251,70 @@ void PathForecast::begin_doubt(const AxisValues& from_mm, bool offsets_too) {
     shadow_ = reader_;
   }
   shadow_->sync_position(other);
-  if (offsets_too) {
-    shadow_->set_tool_length(kZ, shadow_->offsets().tool_length[kZ] + kDoubt);
-    shadow_->reload_offsets();
-  }
   doubtful_at_ = difference(other, at_mm_);
+}
+
+void PathForecast::begin_doubt_everywhere() {
+  AxisValues elsewhere = at_mm_;
+  for (float& mm : elsewhere) mm += kDoubt;
+  begin_doubt(elsewhere);
+}
+
+void PathForecast::begin_tool_doubt() {
+  begin_doubt_everywhere();
+  shadow_->set_tool_length(kZ, reader_->offsets().tool_length[kZ] + kDoubt);
+}
+
+void PathForecast::on_tool_state() {
+  if (is_open() || (shadow_ && doubtful_at_ == std::numeric_limits<AxisMask>::max())) return;
+  begin_tool_doubt();
+  add_pause(line_sent_);
+}
+
+void PathForecast::on_work_by_hand(std::string_view text) {
+  const auto asks = [text](std::string_view question) { return base::iequals(base::trim(text), question); };
+  if (std::ranges::any_of(kQuestions, asks)) return;
+  open(line_sent_, "offsets or tool length may have been set by hand");
+}
+
+bool PathForecast::stand(const AxisValues& at_mm, const AxisValues& offset_mm) {
+  if (!seeks_place() || is_open()) return false;
+  const std::uint8_t active = reader_->state().modal.work_offset;
+  gcode::Offsets& offsets = reader_->offsets();
+  const gcode::Offsets& doubtful = shadow_->offsets();
+  const AxisValues counted = reader_->work_coordinate_offset();
+  for (std::size_t axis = 0; axis < at_mm.size(); ++axis) {
+    const float more = offset_mm[axis] - counted[axis];
+    if (std::abs(more) <= kSameOffset) continue;
+    float* const parts[] = {&offsets.work[active][axis], &offsets.g92[axis], &offsets.tool_length[axis]};
+    const float others[] = {doubtful.work[active][axis], doubtful.g92[axis], doubtful.tool_length[axis]};
+    float* changed = nullptr;
+    int changes = 0;
+    for (std::size_t part = 0; part < std::size(parts); ++part) {
+      if (*parts[part] == others[part]) continue;
+      if (changed == nullptr) changed = parts[part];
+      ++changes;
+    }
+    if (changes == 0) {
+      open(line_sent_, "offsets are others than the program made them");
+      return false;
+    }
+    *changed += more;
+    knows_only_sum_ = knows_only_sum_ || changes > 1;
+  }
+  reader_->reload_offsets();
+  AxisValues place = reader_->state().position_mm;
+  for (std::size_t axis = 0; axis < at_mm.size(); ++axis) {
+    if (std::abs(place[axis] - at_mm[axis]) > kSeenAt) place[axis] = at_mm[axis];
+  }
+  reader_->sync_position(place);
+  at_mm_ = place;
+  doubtful_at_ = 0;
+  shadow_.reset();
+  forget_before(first_piece_ + pieces_.size());
+  add_pause(line_sent_);
+  note_work_offset();
+  return true;
 }
 
 void PathForecast::add_line(const AxisValues& end_mm, const gcode::Feed& feed, std::uint32_t file_line,

@@ -59,6 +59,17 @@ class PathForecast {
   /// Knows nothing from here on, and says why.
   void open(std::uint32_t file_line, std::string_view reason);
 
+  /// The operator sends a line by hand while the job waits for its tool: the place, and what else the line may set, are
+  /// known again once the machine is seen at rest.
+  void on_work_by_hand(std::string_view text);
+  /// The controller changes a tool, and moves as it likes.
+  void on_tool_state();
+  /// Some place is not known, and nothing is on its way that could change it.
+  [[nodiscard]] bool seeks_place() const { return shadow_.has_value() && unanswered_.empty(); }
+  /// The machine rests at `at_mm`, everything is answered, and machine positions are `offset_mm` more than work
+  /// positions: from here on the place is known again. False where that does not tell enough.
+  bool stand(const AxisValues& at_mm, const AxisValues& offset_mm);
+
   /// A line leaves: nothing of it can have been executed before.
   void on_sent(std::uint32_t file_line, std::string_view text);
   /// The oldest line that was sent and not yet answered has its `ok`.
@@ -113,7 +124,10 @@ class PathForecast {
   /// (gcode/act_cycle.cpp): behind the move of a drilling cycle at `index` a second stroke may come, or not.
   void add_strokes_by_chance(std::size_t index, std::uint32_t file_line);
   void add_pause(std::uint32_t file_line);
-  void begin_doubt(const AxisValues& from_mm, bool offsets_too);
+  void begin_doubt(const AxisValues& from_mm);
+  void begin_doubt_everywhere();
+  /// Neither place nor tool length is known.
+  void begin_tool_doubt();
   [[nodiscard]] AxisMask doubt_about(std::size_t index) const;
   void note_work_offset();
   [[nodiscard]] double least_time_s(const AxisValues& way_mm, double length_mm, const gcode::Feed& feed) const;
@@ -126,6 +140,8 @@ class PathForecast {
   PathRules rules_;
   AxisValues at_mm_{};
   AxisMask doubtful_at_ = 0;
+  /// More than one offset may have been set, and the controller told their sum.
+  bool knows_only_sum_ = false;
   double reached_s_ = 0;
   std::uint64_t blocks_ = 0;
   std::deque<PathPiece> pieces_;

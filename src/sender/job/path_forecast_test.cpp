@@ -114,6 +114,36 @@ TEST_F(Forecast, DoubtsEveryAxisAndTheToolLengthBehindAToolChange) {
   EXPECT_EQ(forecast_.pieces().back().unknown_axes, 4U);
 }
 
+TEST_F(Forecast, KnowsThePlaceAgainOnceTheMachineRestsBehindAToolChange) {
+  begin(Firmware::GrblHal);
+  send("G1X10F600");
+  send("T2M6");
+  EXPECT_FALSE(forecast_.seeks_place()) << "not answered yet";
+  forecast_.on_acknowledged();
+  forecast_.on_acknowledged();
+  ASSERT_TRUE(forecast_.seeks_place());
+  // Measured 2.5 mm longer, and left elsewhere.
+  ASSERT_TRUE(forecast_.stand({10, 0, 30}, {0, 0, 2.5F}));
+  EXPECT_FALSE(forecast_.seeks_place());
+  ASSERT_EQ(forecast_.pieces().size(), 1U);
+  EXPECT_FLOAT_EQ(forecast_.pieces()[0].end_mm[2], 30);
+  send("G3X0Z-1I-5J0");
+  ASSERT_FALSE(forecast_.is_open()) << forecast_.open_reason();
+  EXPECT_NEAR(forecast_.pieces().back().end_mm[2], 1.5, 1e-4);
+  EXPECT_EQ(forecast_.pieces().back().unknown_axes, 0U);
+  send("G49");
+  send("G0Z0");
+  EXPECT_FLOAT_EQ(forecast_.pieces().back().end_mm[2], 0);
+}
+
+TEST_F(Forecast, OpensWhenOffsetsMayHaveBeenSetByHand) {
+  begin();
+  forecast_.on_work_by_hand("$#");
+  EXPECT_FALSE(forecast_.is_open());
+  forecast_.on_work_by_hand("G10L20P1Z0");
+  EXPECT_TRUE(forecast_.is_open());
+}
+
 TEST_F(Forecast, CountsWhatIsSurelyOver) {
   begin();
   for (int i = 1; i <= 40; ++i) send("G1X" + std::to_string(i) + "F600");

@@ -43,6 +43,7 @@ void PathWatch::begin(Instant now, const std::optional<gcode::Interpreter>& read
   const PathRules rules = path_rules_of(known);
   forecast_ = {};
   gap_told_ = stands_ = restarted_ = false;
+  rested_at_mm_.reset();
   const AxisValues start = snapshot.machine_position_mm ? axis_values(*snapshot.machine_position_mm) : AxisValues{};
   if (reader && snapshot.machine_position_mm) {
     forecast_.begin(*reader, start, rules);
@@ -105,8 +106,18 @@ void PathWatch::on_overruled() {
   forecast_.open(forecast_.line_sent(), "the job went on from a place off its path");
 }
 
-void PathWatch::on_work_by_hand() {
-  forecast_.open(forecast_.line_sent(), "offsets or tool length may have been set by hand");
+// One report may still be older than what came before it, or come between two motions.
+void PathWatch::look_for_rest(Instant now, const machine::Snapshot& snapshot, bool nothing_on_its_way) {
+  const bool rests = snapshot.state == MachineState::Idle && nothing_on_its_way && snapshot.machine_position_mm &&
+                     snapshot.work_offset_mm;
+  if (snapshot.state == MachineState::Tool) forecast_.on_tool_state();
+  if (!rests) {
+    rested_at_mm_.reset();
+    return;
+  }
+  const AxisValues at = axis_values(*snapshot.machine_position_mm);
+  const bool stays = std::exchange(rested_at_mm_, at) == at;
+  if (stays && forecast_.stand(at, axis_values(*snapshot.work_offset_mm))) follower_.stand(now, forecast_);
 }
 
 std::optional<PathGap> PathWatch::take_gap() {

@@ -40,8 +40,11 @@ class PathWatch {
   void on_cycle_start();
   /// The operator goes on although the machine is not where the program says.
   void on_overruled();
-  /// The operator works by hand while the job waits.
-  void on_work_by_hand();
+  /// The operator sends a line by hand while the job waits for its tool.
+  void on_work_by_hand(std::string_view text) { forecast_.on_work_by_hand(text); }
+  /// Told of every report: where the path had become unknown, a machine that stands still with nothing on its way shows
+  /// where it goes on.
+  void look_for_rest(Instant now, const machine::Snapshot& snapshot, bool nothing_on_its_way);
 
   [[nodiscard]] ExecutingLines executing() const { return follower_.executing(forecast_); }
   /// Once for each job that is not watched to its end.
@@ -50,6 +53,8 @@ class PathWatch {
  private:
   PathForecast forecast_;
   PathFollower follower_;
+  /// Where it rested in the last report.
+  std::optional<AxisValues> rested_at_mm_;
   bool tells_work_position_ = false;
   bool gap_told_ = false;
   bool stands_ = false;

@@ -15,9 +15,8 @@ constexpr double kLeastShare = 0.05;
 
 }  // namespace
 
-void StepLoss::begin(const PathRules& rules, double rounding_mm) {
+void StepLoss::begin(const PathRules& rules) {
   axes_ = static_cast<std::size_t>(rules.settings.axes);
-  rounding_mm_ = rounding_mm;
   step_mm_ = {};
   if (!rules.motion.restart_resets_bresenham) {
     set({});

@@ -17,7 +17,9 @@ namespace kerf::job {
 class StepLoss {
  public:
   /// What an earlier job may have lost stays possible: nobody says whether the machine was homed or reset since.
-  void begin(const PathRules& rules, double rounding_mm);
+  void begin(const PathRules& rules);
+  /// Positions are told but for this.
+  void round_by(double mm) { rounding_mm_ = mm; }
   /// The machine goes on in mid-motion, or may have.
   void on_restart();
   /// A report says `at_mm`, and the machine is on one of `pieces`.

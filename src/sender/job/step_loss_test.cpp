@@ -28,14 +28,16 @@ PathPiece along_y() {
 
 TEST(StepLoss, IsNoneWhereTheFirmwareLosesNone) {
   StepLoss loss;
-  loss.begin(rules_of(vocabulary::Firmware::Grbl), kRounding);
+  loss.round_by(kRounding);
+  loss.begin(rules_of(vocabulary::Firmware::Grbl));
   loss.on_restart();
   EXPECT_EQ(loss.reach_mm(), 0);
 }
 
 TEST(StepLoss, IsLearntFromReportsBesideThePath) {
   StepLoss loss;
-  loss.begin(rules_of(vocabulary::Firmware::GrblHal), kRounding);
+  loss.round_by(kRounding);
+  loss.begin(rules_of(vocabulary::Firmware::GrblHal));
   // Each restart costs Y a step, and X none.
   for (int restart = 1; restart <= 20; ++restart) {
     loss.on_restart();
@@ -50,7 +52,8 @@ TEST(StepLoss, IsLearntFromReportsBesideThePath) {
 
 TEST(StepLoss, GrowsByAStepOfEachAxisAndNoFurther) {
   StepLoss loss;
-  loss.begin(rules_of(vocabulary::Firmware::GrblHal), kRounding);
+  loss.round_by(kRounding);
+  loss.begin(rules_of(vocabulary::Firmware::GrblHal));
   loss.on_restart();
   // A place that no restart explains.
   loss.narrow(std::array{along_x()}, {50, 5.05F, 0});
@@ -60,7 +63,8 @@ TEST(StepLoss, GrowsByAStepOfEachAxisAndNoFurther) {
 
 TEST(StepLoss, KeepsWhatEitherOfTwoPiecesAllows) {
   StepLoss loss;
-  loss.begin(rules_of(vocabulary::Firmware::GrblHal), kRounding);
+  loss.round_by(kRounding);
+  loss.begin(rules_of(vocabulary::Firmware::GrblHal));
   loss.on_restart();
   loss.narrow(std::array{along_x(), along_y()}, {5, 5, 0});
   EXPECT_NEAR(loss.reach_mm(), std::hypot(kStep, kStep, kStep / 2 + kRounding), 1e-4);
@@ -68,12 +72,13 @@ TEST(StepLoss, KeepsWhatEitherOfTwoPiecesAllows) {
 
 TEST(StepLoss, StaysPossibleInTheNextJob) {
   StepLoss loss;
-  loss.begin(rules_of(vocabulary::Firmware::GrblHal), kRounding);
+  loss.round_by(kRounding);
+  loss.begin(rules_of(vocabulary::Firmware::GrblHal));
   for (int i = 0; i < 10; ++i) {
     loss.on_restart();
     loss.narrow(std::array{along_x()}, {50, 5 - kStep * static_cast<float>(i + 1), 0});
   }
-  loss.begin(rules_of(vocabulary::Firmware::GrblHal), kRounding);
+  loss.begin(rules_of(vocabulary::Firmware::GrblHal));
   EXPECT_NEAR(loss.middle_mm()[1], -5 * kStep, kStep);
   EXPECT_GT(loss.reach_mm(), 4 * kStep);
   loss.narrow(std::array{along_x()}, {50, 5, 0});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <utility>
 #include <variant>
 
 #include "common/base/text.hpp"
@@ -202,6 +203,9 @@ void JobRecorder::begin(Instant now, const Session& session, const protocol::Sec
 }
 
 void JobRecorder::follow_phase(Instant now, const job::JobState& state) {
+  const bool is_off = state.departure.has_value();
+  if (!std::exchange(is_off_path_, is_off) && is_off)
+    note(now, NoteKind::OffThePath, state.departure->file_line, job::describe(*state.departure));
   if (state.phase == current_.phase) return;
   const bool was_still = current_.phase == JobPhase::Held;
   current_.phase = state.phase;

@@ -46,6 +46,7 @@ class JobRecorder {
   StartJob start_;
   std::uint32_t job_ = 0;
   bool is_open_ = false;
+  bool is_off_path_ = false;
   /// As written down last, and what has happened since.
   job::JobAdvanced written_;
   Instant written_at_{};

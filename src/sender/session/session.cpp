@@ -103,6 +103,7 @@ void Session::on_report(Instant now, MachineState before) {
   if (!has_job()) return;
   const bool was_at_tool_change = is_at_tool_change();
   job_->on_snapshot(now, snapshot(), ledger().empty() ? std::string_view{} : ledger().oldest().text);
+  path_.look_for_rest(now, snapshot(), ledger().empty());
   follow_tool_work(now);
   // Until the tool is in, the operator may have moved the machine.
   if (!was_at_tool_change && !is_at_tool_change()) follow_path(now, asked);

@@ -33,7 +33,7 @@ void Session::send_by_hand(Instant now, std::string text) {
   if (!tool_work_.is_open()) tool_work_.begin(snapshot());
   if (tool_work_.on_line(now, snapshot())) send_byte(Realtime::ToolChangeAcknowledge);
   // Offsets and place are no longer what the program made them.
-  path_.on_work_by_hand();
+  path_.on_work_by_hand(text);
   incidents_.forget();
   last_line_jogs_ = streaming::is_jog(text);
   streamer_.enqueue(Purpose::Operator, std::move(text));
