@@ -36,16 +36,11 @@ struct FinishedMove {
   ExecutedStretch executed{};
 };
 
-/// Grows without bound while a controller keeps it, unless it only counts or somebody takes what is finished.
+/// Grows without bound while a controller keeps it, unless somebody takes what is finished.
 class MotionLog {
  public:
-  enum class Keeps : std::uint8_t { Blocks, Counts };
-
-  explicit MotionLog(Keeps keeps = Keeps::Blocks) : keeps_(keeps) {}
-
   void planned(std::uint32_t line, const motion::PlannedBlock& block) {
     ++planned_;
-    if (keeps_ == Keeps::Counts) return;
     moves_.push_back({.line = line,
                       .length_mm = block.length_mm,
                       .rate_mm_per_min = block.programmed_rate,
@@ -53,7 +48,6 @@ class MotionLog {
   }
   void began(Instant at) {
     ++executed_;
-    if (keeps_ == Keeps::Counts) return;
     stretches_.push_back({.began = at, .ended = at});
     is_open_ = true;
   }
@@ -82,13 +76,11 @@ class MotionLog {
 
   /// Blocks that were planned and have begun.
   [[nodiscard]] std::size_t blocks() const { return std::min(planned_, executed_); }
-  /// Empty if only counts are kept.
   [[nodiscard]] const std::deque<ExecutedStretch>& stretches() const { return stretches_; }
   /// When the steppers came to rest, or finished a block, for the last time.
   [[nodiscard]] Instant last_end() const { return last_end_; }
 
  private:
-  Keeps keeps_;
   std::size_t planned_ = 0;
   std::size_t executed_ = 0;
   std::deque<PlannedMove> moves_;

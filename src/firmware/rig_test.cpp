@@ -282,7 +282,7 @@ TEST(Rig, EveryDeedIsAnEntryInTheLog) {
     }
     while (line.ends_with(' ')) line.pop_back();
     if (line == "limit X") line += " on";
-    if (line == "switch X") line += " 10";
+    if (line == "switch X" || line == "lose X") line += " 10";
     if (line.ends_with(" to")) {
       line += line.starts_with("delay") ? " 1s" : line.starts_with("inject") ? " G21" : " next 1";
     }

@@ -319,9 +319,9 @@ std::vector<double> VirtualController::position_mm() const {
   return mm;
 }
 
-MotionLog& VirtualController::keep_motion_log(MotionLog::Keeps keeps) {
+MotionLog& VirtualController::keep_motion_log() {
   parts_->board.lines_read = 0;
-  return parts_->board.motion_log.emplace(keeps);
+  return parts_->board.motion_log.emplace();
 }
 
 const MotionLog& VirtualController::motion_log() const {

@@ -84,8 +84,8 @@ class VirtualController {
   /// The same in mm, one value for each axis that the machine has.
   [[nodiscard]] std::vector<double> position_mm() const;
 
-  /// From now on every block is written down, or counted, in this log, which lives as long as the controller.
-  MotionLog& keep_motion_log(MotionLog::Keeps keeps = MotionLog::Keeps::Blocks);
+  /// From now on every block is written down in this log, which lives as long as the controller.
+  MotionLog& keep_motion_log();
   /// Empty unless it is kept.
   [[nodiscard]] const MotionLog& motion_log() const;
 

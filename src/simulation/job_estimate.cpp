@@ -165,12 +165,15 @@ class Ledger {
 JobEstimate estimate_job(const job::Program& program, const CaseMachine& machine, ProgramLink link) {
   const auto& dialect = machine.personality.dialect();
   Ledger ledger(program, dialect);
-  const ProgramRun run{.program = as_sent(program, dialect),
-                       .link = link,
-                       .keeps_blocks = false,
-                       .on_block = [&](const BlockTrace& block) { ledger.on_block(block); },
-                       .operator_goes_on = true};
-  return ledger.finish(trace_program(run, machine));
+  const ProgramRun run{.program = as_sent(program, dialect), .link = link, .operator_goes_on = true};
+  ProgramTracer tracer(run, machine);
+  std::vector<BlockTrace> ended;
+  for (bool goes_on = true; goes_on;) {
+    ended.clear();
+    goes_on = tracer.run_on(ended);
+    for (const BlockTrace& block : ended) ledger.on_block(block);
+  }
+  return ledger.finish(tracer.finish());
 }
 
 std::vector<LostTime> lost_on_the_link(const JobEstimate& planner, const JobEstimate& world) {

@@ -116,40 +116,55 @@ class Feeder {
   Instant byte_at_{};
 };
 
-class TraceRun {
+/// Blocks that are given away at once.
+constexpr std::size_t kPiece = 1000;
+
+}  // namespace
+
+class ProgramTracer::Run {
  public:
-  TraceRun(const ProgramRun& run, const CaseMachine& machine)
+  Run(const ProgramRun& run, const CaseMachine& machine)
       : run_(run),
         controller_(machine.personality, machine.stored),
-        feeder_(as_sent(run.program), run.link, window_of(machine.personality.firmware)),
-        wants_blocks_(run.keeps_blocks || run.on_block) {
+        feeder_(as_sent(run.program), run.link, window_of(machine.personality.firmware)) {
     for (const auto& event : machine.workcell) controller_.submit(now_, event);
     if (machine.personality.full_buffer_drops_realtime) kept_free_ = kRoomForRealtime;
     switch_on(controller_, now_, machine.told);
-    using Keeps = firmware::MotionLog::Keeps;
-    log_ = &controller_.keep_motion_log(wants_blocks_ ? Keeps::Blocks : Keeps::Counts);
+    log_ = &controller_.keep_motion_log();
     const std::string sent = as_sent(run.program);
     trace_.lines = static_cast<std::uint32_t>(std::ranges::count(sent, '\n'));
     next_sample_ = run.sample_every ? Instant{} : kNever;
+    feed();
   }
 
-  MotionTrace run() {
-    Standstill standstill;
-    feed();
-    for (;;) {
+  bool run_on(std::vector<BlockTrace>& ended) {
+    const std::size_t enough = ended.size() + kPiece;
+    while (ended.size() < enough) {
       const Instant next = next_instant();
       if (next == kNever && goes_on()) continue;
-      if (next == kNever || standstill.lasts(controller_, trace_.lines_answered)) break;
+      if (next == kNever || standstill_.lasts(controller_, trace_.lines_answered)) {
+        while (const auto begun = log_->take_begun()) ended.push_back(block_of(*begun));
+        return false;
+      }
       sample_before(next);
       now_ = std::max(now_, next);
       controller_.advance_to(now_);
       inject();
       feed();
-      if (wants_blocks_) {
-        while (const auto finished = log_->take_finished()) tell(*finished);
-      }
+      while (const auto finished = log_->take_finished()) ended.push_back(block_of(*finished));
     }
-    finish();
+    return true;
+  }
+
+  MotionTrace finish() {
+    const Instant end = std::max(log_->last_end(), last_answer_);
+    trace_.total_s = base::to_seconds(end - Instant{});
+    if (run_.sample_every) {
+      while (next_sample_ < end + *run_.sample_every) take_sample();
+    }
+    trace_.final_steps = steps();
+    trace_.final_mm = controller_.position_mm();
+    trace_.block_count = log_->blocks();
     return std::move(trace_);
   }
 
@@ -176,16 +191,14 @@ class TraceRun {
     return true;
   }
 
-  void tell(const firmware::FinishedMove& move) {
-    const BlockTrace block{.line = move.planned.line,
-                           .start_s = base::to_seconds(move.executed.began - Instant{}),
-                           .end_s = base::to_seconds(move.executed.ended - Instant{}),
-                           .length_mm = static_cast<double>(move.planned.length_mm),
-                           .rate_mm_per_min = static_cast<double>(move.planned.rate_mm_per_min),
-                           .rapid = move.planned.rapid,
-                           .end_steps = move.executed.end_steps};
-    if (run_.on_block) run_.on_block(block);
-    if (run_.keeps_blocks) trace_.blocks.push_back(block);
+  static BlockTrace block_of(const firmware::FinishedMove& move) {
+    return {.line = move.planned.line,
+            .start_s = base::to_seconds(move.executed.began - Instant{}),
+            .end_s = base::to_seconds(move.executed.ended - Instant{}),
+            .length_mm = static_cast<double>(move.planned.length_mm),
+            .rate_mm_per_min = static_cast<double>(move.planned.rate_mm_per_min),
+            .rapid = move.planned.rapid,
+            .end_steps = move.executed.end_steps};
   }
 
   [[nodiscard]] Instant next_injection() const {
@@ -248,25 +261,13 @@ class TraceRun {
   }
   [[nodiscard]] std::vector<std::int32_t> steps() const { return shortened(controller_.position_steps()); }
 
-  void finish() {
-    const Instant end = std::max(log_->last_end(), last_answer_);
-    trace_.total_s = base::to_seconds(end - Instant{});
-    if (run_.sample_every) {
-      while (next_sample_ < end + *run_.sample_every) take_sample();
-    }
-    trace_.final_steps = steps();
-    trace_.final_mm = controller_.position_mm();
-    trace_.block_count = log_->blocks();
-    while (const auto begun = log_->take_begun()) tell(*begun);
-  }
-
   const ProgramRun& run_;
   VirtualController controller_;
   /// Rabbit loses realtime bytes that meet a full buffer: a sender that keeps it full leaves room for them.
   std::size_t kept_free_ = 0;
   Feeder feeder_;
-  bool wants_blocks_;
   firmware::MotionLog* log_ = nullptr;
+  Standstill standstill_;
   MotionTrace trace_;
   Instant now_{};
   Instant last_answer_{};
@@ -274,10 +275,27 @@ class TraceRun {
   std::size_t injected_ = 0;
 };
 
-}  // namespace
+ProgramTracer::ProgramTracer(const ProgramRun& run, const CaseMachine& machine)
+    : run_(std::make_unique<Run>(run, machine)) {}
+ProgramTracer::~ProgramTracer() = default;
+
+bool ProgramTracer::run_on(std::vector<BlockTrace>& ended) {
+  return run_->run_on(ended);
+}
+
+MotionTrace ProgramTracer::finish() {
+  return run_->finish();
+}
 
 MotionTrace trace_program(const ProgramRun& run, const CaseMachine& machine) {
-  return TraceRun(run, machine).run();
+  ProgramTracer tracer(run, machine);
+  std::vector<BlockTrace> blocks;
+  while (tracer.run_on(blocks)) {
+    if (!run.keeps_blocks) blocks.clear();
+  }
+  MotionTrace trace = tracer.finish();
+  if (run.keeps_blocks) trace.blocks = std::move(blocks);
+  return trace;
 }
 
 }  // namespace kerf::simulation

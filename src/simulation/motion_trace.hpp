@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,10 +40,8 @@ struct ProgramRun {
   /// Counted from the first byte of the program.
   std::vector<InjectedByte> inject{};
   std::optional<Duration> sample_every{};
-  /// False: blocks are only counted; there may be millions.
+  /// False: trace_program() only counts blocks; there may be millions.
   bool keeps_blocks = true;
-  /// Is given each block when its motion is over, whether it is kept or not.
-  std::function<void(const BlockTrace&)> on_block{};
   /// Somebody presses Cycle Start at once whenever the program waits for that.
   bool operator_goes_on = false;
 };
@@ -81,5 +79,24 @@ struct MotionTrace {
 /// Runs the program to its end, or until the machine waits for something that never comes. Blank lines count, and line
 /// ends may be LF or CR LF.
 [[nodiscard]] MotionTrace trace_program(const ProgramRun& run, const CaseMachine& machine);
+
+/// The same piece by piece, for whoever wants the blocks of a long program without keeping them all.
+class ProgramTracer {
+ public:
+  /// Both must outlive it.
+  ProgramTracer(const ProgramRun& run, const CaseMachine& machine);
+  ~ProgramTracer();
+  ProgramTracer(const ProgramTracer&) = delete;
+  ProgramTracer& operator=(const ProgramTracer&) = delete;
+
+  /// Goes on until some blocks more have ended, which are appended to `ended`; false at the end of the program.
+  bool run_on(std::vector<BlockTrace>& ended);
+  /// Once run_on() gave false: everything but the blocks.
+  [[nodiscard]] MotionTrace finish();
+
+ private:
+  class Run;
+  std::unique_ptr<Run> run_;
+};
 
 }  // namespace kerf::simulation

