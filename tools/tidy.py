@@ -65,7 +65,8 @@ MAY_INCLUDE: dict[str, list[str]] = {
     "firmware": COMMON,
     "simulation": COMMON + SENDER + ["firmware"],
     "io": COMMON + SENDER + ["firmware"],
-    "apps": COMMON + SENDER + ["firmware", "simulation", "io"],
+    "rehearsal": COMMON + ["sender/machine", "sender/job", "firmware", "simulation"],
+    "apps": COMMON + SENDER + ["firmware", "simulation", "rehearsal", "io"],
 }
 SUBFOLDERS = {"common/vocabulary/dialects", "firmware/personalities", "io/web", "io/store", "io/notify"}
 TABLE_FOLDERS = ("src/common/vocabulary/dialects", "src/firmware/personalities")

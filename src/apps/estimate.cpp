@@ -17,17 +17,17 @@
 #include "apps/progress_text.hpp"
 #include "io/json.hpp"
 #include "io/program_file.hpp"
-#include "simulation/job_estimate.hpp"
+#include "rehearsal/job_estimate.hpp"
 #include "simulation/machine_like.hpp"
 
 namespace kerf::apps {
 namespace {
 
 using io::Json;
+using rehearsal::JobEstimate;
+using rehearsal::LostTime;
+using rehearsal::PartEstimate;
 using simulation::CaseMachine;
-using simulation::JobEstimate;
-using simulation::LostTime;
-using simulation::PartEstimate;
 
 constexpr std::size_t kMostShown = 12;
 
@@ -54,10 +54,10 @@ std::optional<CaseMachine> machine_of(const EstimateOptions& options) {
 }
 
 Grades grades_of(const job::Program& program, const CaseMachine& machine, simulation::ProgramLink link) {
-  Grades grades{.planner = simulation::estimate_job(program, machine)};
+  Grades grades{.planner = rehearsal::estimate_job(program, machine)};
   if (link.baud) {
-    grades.world = simulation::estimate_job(program, machine, link);
-    grades.losses = simulation::lost_on_the_link(grades.planner, *grades.world);
+    grades.world = rehearsal::estimate_job(program, machine, link);
+    grades.losses = rehearsal::lost_on_the_link(grades.planner, *grades.world);
   }
   return grades;
 }

@@ -14,7 +14,7 @@
 #include "simulation/case_runner.hpp"
 #include "simulation/motion_trace.hpp"
 
-namespace kerf::simulation {
+namespace kerf::rehearsal {
 
 /// Seconds; together the whole time.
 struct UseOfTime {
@@ -60,7 +60,7 @@ struct JobEstimate {
   std::vector<FeedBin> feeds;
   /// Lines at which the program waits for the operator.
   std::vector<std::uint32_t> stops;
-  std::vector<RefusedLine> errors;
+  std::vector<simulation::RefusedLine> errors;
   std::vector<int> alarms;
   /// Ends, in seconds, of equal shares of the lines: to compare two estimates of one program.
   std::vector<double> marks_s;
@@ -75,10 +75,11 @@ struct LostTime {
 BOOST_DESCRIBE_STRUCT(LostTime, (), (first_line, last_line, lost_s))
 
 /// Over `link`, from a cutter at rest at the machine's zero, with overrides of 100 %.
-[[nodiscard]] JobEstimate estimate_job(const job::Program& program, const CaseMachine& machine, ProgramLink link = {});
+[[nodiscard]] JobEstimate estimate_job(const job::Program& program, const simulation::CaseMachine& machine,
+                                       simulation::ProgramLink link = {});
 
 /// Where `world` needs longer than `planner`: there the link cannot keep the planner full. The longest loss comes
 /// first.
 [[nodiscard]] std::vector<LostTime> lost_on_the_link(const JobEstimate& planner, const JobEstimate& world);
 
-}  // namespace kerf::simulation
+}  // namespace kerf::rehearsal

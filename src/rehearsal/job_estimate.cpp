@@ -1,4 +1,4 @@
-#include "simulation/job_estimate.hpp"
+#include "rehearsal/job_estimate.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,15 @@
 #include "sender/job/program_flow.hpp"
 #include "sender/job/wire_form.hpp"
 
-namespace kerf::simulation {
+namespace kerf::rehearsal {
 namespace {
+
+using simulation::BlockTrace;
+using simulation::CaseMachine;
+using simulation::MotionTrace;
+using simulation::ProgramLink;
+using simulation::ProgramRun;
+using simulation::ProgramTracer;
 
 constexpr std::uint32_t kMarks = 1024;
 constexpr std::array<double, 11> kFeedBins = {0, 100, 200, 500, 1000, 2000, 3000, 5000, 7500, 10'000, 20'000};
@@ -203,4 +210,4 @@ std::vector<LostTime> lost_on_the_link(const JobEstimate& planner, const JobEsti
   return losses;
 }
 
-}  // namespace kerf::simulation
+}  // namespace kerf::rehearsal

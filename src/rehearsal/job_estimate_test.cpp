@@ -1,10 +1,12 @@
-#include "simulation/job_estimate.hpp"
+#include "rehearsal/job_estimate.hpp"
 
 #include <gmock/gmock.h>
 
-namespace kerf::simulation {
+namespace kerf::rehearsal {
 namespace {
 
+using simulation::CaseMachine;
+using simulation::trace_program;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -92,4 +94,4 @@ INSTANTIATE_TEST_SUITE_P(Firmwares, Estimates, testing::Values(Firmware::Grbl, F
                          });
 
 }  // namespace
-}  // namespace kerf::simulation
+}  // namespace kerf::rehearsal
