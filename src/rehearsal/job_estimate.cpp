@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/vocabulary/dialect.hpp"
+#include "rehearsal/program_walk.hpp"
 #include "sender/job/operations.hpp"
 #include "sender/job/program_flow.hpp"
 #include "sender/job/wire_form.hpp"
@@ -53,14 +54,14 @@ std::string as_sent(const job::Program& program, const vocabulary::Dialect& dial
 }
 
 /// Reads the program beside the machine: tool, operation and what the lines since the last motion asked for.
-class ProgramWalk {
+class ReadingAlong {
  public:
   struct Pause {
     bool dwells = false;
     bool changes_tool = false;
   };
 
-  ProgramWalk(const job::Program& program, const vocabulary::Dialect& dialect)
+  ReadingAlong(const job::Program& program, const vocabulary::Dialect& dialect)
       : program_(program), form_(job::wire_form_of(dialect)), next_(program.line_at(0, 1)) {}
 
   /// Up to the line that planned a block, or to the end.
@@ -73,8 +74,8 @@ class ProgramWalk {
       const job::FlowWords words = job::flow_words_of(wire_);
       pause.dwells = pause.dwells || words.dwell_s.has_value();
       pause.changes_tool = pause.changes_tool || words.changes_tool;
-      if (words.tool) selected_ = words.tool;
-      if (words.changes_tool || (words.tool && tool_.empty())) tool_ = "T" + std::to_string(selected_.value_or(0));
+      in_use_.on_words(words);
+      if (words.tool || words.changes_tool) tool_ = "T" + std::to_string(in_use_.number().value_or(0));
     }
     return pause;
   }
@@ -88,7 +89,7 @@ class ProgramWalk {
   std::optional<job::ProgramLine> next_;
   std::string wire_;
   job::OperationFinder operations_;
-  std::optional<int> selected_;
+  ToolInUse in_use_;
   std::string tool_;
   std::string operation_;
 };
@@ -150,7 +151,7 @@ class Ledger {
   }
 
  private:
-  void account_for(double gap_s, const ProgramWalk::Pause& pause) {
+  void account_for(double gap_s, const ReadingAlong::Pause& pause) {
     UseOfTime& use = sum_.use;
     (pause.changes_tool ? use.tool_change_s : pause.dwells ? use.dwell_s : use.other_s) += gap_s;
   }
@@ -160,7 +161,7 @@ class Ledger {
     return sum_.marks_s[static_cast<std::size_t>(share)];
   }
 
-  ProgramWalk walk_;
+  ReadingAlong walk_;
   std::uint32_t lines_;
   JobEstimate sum_;
   std::array<FeedBin, kFeedBins.size()> feeds_{};
