@@ -210,6 +210,17 @@ struct EstimateOptions {
 };
 [[nodiscard]] ExitStatus estimate(const EstimateOptions& options);
 
+struct CheckOptions {
+  std::string file;
+  CaseMachineOptions virtual_machine;
+  std::string machine;   ///< not empty: asked for its firmware, settings, offsets and position
+  std::string zero;      ///< `X,Y,Z` in machine coordinates; empty: nobody knows
+  std::string position;  ///< the same
+  bool json = false;
+  io::RecordingOptions recording{};
+};
+[[nodiscard]] ExitStatus check(const CheckOptions& options);
+
 struct RecordOptions {
   std::string machine = kDefaultMachine;
   bool listens = false;        ///< send nothing at all

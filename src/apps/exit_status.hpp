@@ -7,9 +7,10 @@ enum class ExitStatus {
   Done = 0,
   Usage = 1,         ///< wrong option, or a file that cannot be used
   NoConnection = 2,  ///< no machine there, or none that speaks Grbl
-  Refused = 3,       ///< the controller refused a line; `kerf verify`: a talk failed
+  Refused = 3,  ///< the controller refused a line, or `kerf check` says that it would; `kerf verify`: a talk failed
   Alarm = 4,
   Interrupted = 5,  ///< stopped by the operator, link lost, or a reset from outside
+  Warned = 6,       ///< `kerf check`: nothing would be refused, but there are warnings
 };
 
 }  // namespace kerf::apps

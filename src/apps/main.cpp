@@ -251,6 +251,31 @@ void add_estimate(CLI::App& kerf, Chosen& chosen) {
   command->callback([&chosen, options] { chosen = [options] { return kerf::apps::estimate(*options); }; });
 }
 
+void add_check(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<kerf::apps::CheckOptions>();
+  CLI::App* command = kerf.add_subcommand("check", "Find what would go wrong, before anything moves");
+  command->add_option("FILE", options->file, "The G-code file")->required()->type_name("");
+  add_case_machine(*command, options->virtual_machine);
+  command
+      ->add_option("-m,--machine", options->machine,
+                   "Ask this machine for its firmware, settings, offsets and position; nothing moves")
+      ->type_name("URL")
+      ->excludes("--personality")
+      ->excludes("--settings");
+  add_recording(*command, options->recording);
+  command->add_option("--zero", options->zero, "Machine position of the work zero, for a machine that is not asked")
+      ->type_name("X,Y,Z")
+      ->excludes("--machine");
+  command->add_option("--position", options->position, "Machine position of the tool when the program starts")
+      ->type_name("X,Y,Z")
+      ->excludes("--machine");
+  command->add_flag("--json", options->json, "Print the result as one JSON object");
+  command->footer(
+      "\nExit status: 0 nothing to worry about, 6 warnings, 3 errors (lines that this controller would refuse, or stop "
+      "at with an alarm): docs/check.md.\n");
+  command->callback([&chosen, options] { chosen = [options] { return kerf::apps::check(*options); }; });
+}
+
 void add_record(CLI::App& kerf, Chosen& chosen) {
   auto options = std::make_shared<kerf::apps::RecordOptions>();
   CLI::App* command = kerf.add_subcommand("record", "Watch a machine and write down what is said, until Ctrl-C");
@@ -361,6 +386,7 @@ int start(int argc, char** argv) {
   add_conform(kerf, chosen);
   add_simulate(kerf, chosen);
   add_estimate(kerf, chosen);
+  add_check(kerf, chosen);
   add_record(kerf, chosen);
   add_log(kerf, chosen);
   add_replay(kerf, chosen);

@@ -7,6 +7,7 @@
 
 #include "common/vocabulary/dialect.hpp"
 #include "rehearsal/program_walk.hpp"
+#include "rehearsal/sent_lines.hpp"
 #include "sender/job/operations.hpp"
 #include "sender/job/program_flow.hpp"
 #include "sender/job/wire_form.hpp"
@@ -28,28 +29,11 @@ constexpr double kNoticeable_s = 0.1;
 /// The machine loses so much of the time of these lines at least.
 constexpr double kNoticeableShare = 0.02;
 
-/// The file's lines as Kerf would send them, each at its own place: what is not sent is a blank line. Changes of tools
-/// that a controller refuses are the operator's.
+/// The file's lines as Kerf would send them, each at its own place: what is not sent is a blank line.
 std::string as_sent(const job::Program& program, const vocabulary::Dialect& dialect) {
-  const job::WireForm form = job::wire_form_of(dialect);
-  using vocabulary::ToolChangeRule;
-  const auto changes =
-      dialect.tool_change == ToolChangeRule::AsTold ? job::ToolChanges::ByController : job::ToolChanges::ByOperator;
-  job::ProgramFlow flow(changes, false);
+  SentLines lines(program, dialect);
   std::string text;
-  std::string wire;
-  for (auto line = program.line_at(0, 1); line; line = program.line_at(program.offset_after(*line), line->number + 1)) {
-    wire.clear();
-    job::append_wire_form(wire, line->text, form);
-    auto passage = flow.admit(line->number, line->text, wire);
-    if (passage == job::Passage::Wait) {
-      flow.pass_gate();
-      passage = flow.admit(line->number, line->text, wire);
-    }
-    if (passage == job::Passage::End) break;
-    if (passage == job::Passage::Send) text += wire;
-    text += '\n';
-  }
+  while (const auto line = lines.next()) (text += line->wire) += '\n';
   return text;
 }
 

@@ -48,6 +48,37 @@ Letters letters_of(std::string_view wire) {
   return letters;
 }
 
+vocabulary::AxisValues axis_values(const std::vector<double>& values) {
+  vocabulary::AxisValues result{};
+  for (std::size_t axis = 0; axis < std::min(values.size(), result.size()); ++axis) {
+    result.at(axis) = static_cast<float>(values[axis]);
+  }
+  return result;
+}
+
+gcode::Offsets stored_offsets(const firmware::StoredState& stored, int tools) {
+  struct Slot {
+    std::string_view name;
+    vocabulary::AxisValues* values;
+  };
+  gcode::Offsets offsets;
+  auto& work = offsets.work;
+  const Slot slots[] = {{"G54", &work[0]},   {"G55", &work[1]},     {"G56", &work[2]},    {"G57", &work[3]},
+                        {"G58", &work[4]},   {"G59", &work[5]},     {"G59.1", &work[6]},  {"G59.2", &work[7]},
+                        {"G59.3", &work[8]}, {"G28", &offsets.g28}, {"G30", &offsets.g30}};
+  for (const Slot& slot : slots) {
+    const auto found = stored.offsets.find(slot.name);
+    if (found != stored.offsets.end()) *slot.values = axis_values(found->second);
+  }
+  offsets.tools.resize(static_cast<std::size_t>(tools) + 1);
+  for (const auto& [number, tool] : stored.tools) {
+    if (number < 1 || number > tools) continue;
+    offsets.tools.at(static_cast<std::size_t>(number)) = {.length_mm = axis_values(tool.length_mm),
+                                                          .radius_mm = static_cast<float>(tool.radius_mm)};
+  }
+  return offsets;
+}
+
 }  // namespace
 
 void ToolInUse::on_words(const job::FlowWords& words) {
@@ -62,7 +93,8 @@ gcode::Interpreter interpreter_of(const simulation::CaseMachine& machine) {
   gcode::InterpreterSettings settings;
   store.configure(settings);
   gcode::Interpreter reader(gcode::rules_for(machine.personality.dialect()), settings);
-  if (settings.tools > 0) reader.offsets().tools.resize(static_cast<std::size_t>(settings.tools) + 1);
+  reader.offsets() = stored_offsets(machine.stored, settings.tools);
+  reader.reload_offsets();
   return reader;
 }
 

@@ -1,0 +1,25 @@
+#pragma once
+// The findings of a check for people and for programs.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/exit_status.hpp"
+#include "io/json.hpp"
+#include "rehearsal/check.hpp"
+
+namespace kerf::apps {
+
+/// All of it, the worst first; `machine` is the name of the firmware.
+[[nodiscard]] std::vector<std::string> check_text(const rehearsal::CheckResult& result, std::string_view file,
+                                                  std::string_view machine);
+
+/// Before a job: errors in full, each kind of warning in one line, no notes.
+[[nodiscard]] std::vector<std::string> check_lines_for_run(const rehearsal::CheckResult& result);
+
+[[nodiscard]] io::Json check_json(const rehearsal::CheckResult& result, std::string_view machine);
+
+[[nodiscard]] ExitStatus status_of(const rehearsal::CheckResult& result);
+
+}  // namespace kerf::apps
