@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "apps/commands.hpp"
 #include "apps/exit_status.hpp"
 #include "io/recording_options.hpp"
 
@@ -32,6 +33,9 @@ void add_recording(CLI::App& command, io::RecordingOptions& recording);
 /// The options of every command that connects to a machine.
 void add_machine(CLI::App& command, std::string& machine, io::RecordingOptions& recording);
 
+/// The firmware and the settings of a machine that is only rehearsed on.
+void add_virtual_machine(CLI::App& command, CaseMachineOptions& machine);
+
 /// `kerf run`.
 void add_run(CLI::App& kerf, Chosen& chosen);
 /// `kerf resume`.
@@ -40,5 +44,8 @@ void add_resume(CLI::App& kerf, Chosen& chosen);
 void add_audit(CLI::App& kerf, Chosen& chosen);
 /// `kerf virtual`.
 void add_virtual(CLI::App& kerf, Chosen& chosen);
+
+/// `kerf plot`.
+void add_plot(CLI::App& kerf, Chosen& chosen);
 
 }  // namespace kerf::apps

@@ -10,6 +10,7 @@
 
 #include "apps/exit_status.hpp"
 #include "io/recording_options.hpp"
+#include "rehearsal/plot_painter.hpp"
 #include "sender/session/job_options.hpp"
 
 namespace kerf::apps {
@@ -220,6 +221,16 @@ struct CheckOptions {
   io::RecordingOptions recording{};
 };
 [[nodiscard]] ExitStatus check(const CheckOptions& options);
+
+struct PlotCommandOptions {
+  std::string file;
+  std::string output;
+  rehearsal::PlotView view = rehearsal::PlotView::Isometric;
+  std::optional<rehearsal::PlotColour> colour{};
+  std::string size = "1200x900";
+  CaseMachineOptions machine;
+};
+[[nodiscard]] ExitStatus plot(const PlotCommandOptions& options);
 
 struct RecordOptions {
   std::string machine = kDefaultMachine;

@@ -180,13 +180,7 @@ void add_verify(CLI::App& kerf, Chosen& chosen) {
 }
 
 void add_case_machine(CLI::App& command, kerf::apps::CaseMachineOptions& machine) {
-  command
-      .add_option("-p,--personality", machine.personality,
-                  "Which firmware the machine runs: " + kerf::firmware::personality_names())
-      ->type_name("NAME")
-      ->capture_default_str();
-  command.add_option("--settings", machine.settings_file, "The machine has the $n=value lines of this file")
-      ->type_name("FILE");
+  kerf::apps::add_virtual_machine(command, machine);
   command
       .add_option("--limit-switch-at", machine.limit_switches,
                   "Where the limit switches close, in mm from where the machine was switched on")
@@ -387,6 +381,7 @@ int start(int argc, char** argv) {
   add_simulate(kerf, chosen);
   add_estimate(kerf, chosen);
   add_check(kerf, chosen);
+  kerf::apps::add_plot(kerf, chosen);
   add_record(kerf, chosen);
   add_log(kerf, chosen);
   add_replay(kerf, chosen);

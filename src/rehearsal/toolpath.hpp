@@ -79,6 +79,13 @@ struct PathVertex {
   bool operator==(const PathVertex&) const = default;
 };
 
+/// Axes on which the way from `before` to `vertex` is not known. A cut settles every doubt about where it begins: it is
+/// on the workpiece, and that is all that a drawing needs.
+[[nodiscard]] constexpr vocabulary::AxisMask unknown_axes_between(const PathVertex& before, const PathVertex& vertex) {
+  const unsigned begin = is_cut(vertex.kind) ? 0U : before.unknown_axes;
+  return static_cast<vocabulary::AxisMask>(begin | vertex.unknown_axes);
+}
+
 /// The smallest box around a path; empty before the first point.
 struct PathBounds {
   Point least_mm{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),

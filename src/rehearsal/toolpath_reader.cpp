@@ -153,11 +153,6 @@ double ToolpathReader::seconds_of(const AxisValues& target_mm, const gcode::Feed
   return std::max(least_s, minutes * kSecondsPerMinute);
 }
 
-void ToolpathReader::settle_places(PathKind kind) {
-  // What cuts is on the workpiece, and that is all that a drawing needs.
-  if (is_cut(kind)) last_.unknown_axes = 0;
-}
-
 void ToolpathReader::add_move(const AxisValues& target_mm, const gcode::Feed& feed, PathVertex vertex,
                               PathChunk& chunk) {
   const auto unknown = static_cast<AxisMask>((last_.unknown_axes & ~known_after_) | unknown_after_);
@@ -165,7 +160,6 @@ void ToolpathReader::add_move(const AxisValues& target_mm, const gcode::Feed& fe
     last_.unknown_axes = unknown;
     return;
   }
-  settle_places(vertex.kind);
   vertex.unknown_axes = is_cut(vertex.kind) ? AxisMask{0} : unknown;
   for (std::size_t axis = 0; axis < vertex.at_mm.size(); ++axis) {
     vertex.at_mm[axis] = target_mm[axis] - origin_mm_[axis];
@@ -176,7 +170,7 @@ void ToolpathReader::add_move(const AxisValues& target_mm, const gcode::Feed& fe
   vertex.tool = last_.tool;
   vertex.operation = last_.operation;
   vertex.time_s = last_.time_s + seconds_of(target_mm, feed, length_of(last_.at_mm, vertex));
-  if (last_.unknown_axes == 0 && vertex.unknown_axes == 0) include_motion(chunk.bounds, last_.at_mm, vertex);
+  if (unknown_axes_between(last_, vertex) == 0) include_motion(chunk.bounds, last_.at_mm, vertex);
   at_mm_ = target_mm;
   push(vertex, chunk);
 }

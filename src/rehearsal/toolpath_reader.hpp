@@ -50,7 +50,6 @@ class ToolpathReader {
   void add(const gcode::Action& action, PathChunk& chunk);
   void add_move(const gcode::AxisValues& target_mm, const gcode::Feed& feed, PathVertex vertex, PathChunk& chunk);
   void add_event(PathKind kind, double duration_s, PathChunk& chunk);
-  void settle_places(PathKind kind);
   [[nodiscard]] PathKind kind_of(const gcode::Feed& feed);
   [[nodiscard]] double seconds_of(const gcode::AxisValues& target_mm, const gcode::Feed& feed, double length_mm) const;
   void push(const PathVertex& vertex, PathChunk& chunk);
