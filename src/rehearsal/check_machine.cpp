@@ -87,6 +87,7 @@ CheckMachine check_machine_of(const simulation::CaseMachine& described, const Ch
   if (store.flag(setting::kSoftLimits)) machine.guarded_axes = guarded_axes(machine);
   machine.spindle_rpm_max = static_cast<float>(store.number(setting::kSpindleMax));
   machine.spindle_rpm_min = static_cast<float>(store.number(setting::kSpindleMin));
+  machine.is_laser = store.number(setting::kMode) == 1.0;
   if (personality.has_extended_settings) {
     machine.tool_change_mode = static_cast<int>(store.number(setting::kToolChangeMode));
   }
@@ -136,6 +137,7 @@ CheckMachine check_machine_of(const machine::Capabilities& known, const machine:
   if (machine::is_setting_on(known, setting::kSoftLimits)) machine.guarded_axes = guarded_axes(machine);
   machine.spindle_rpm_max = static_cast<float>(number(setting::kSpindleMax));
   machine.spindle_rpm_min = static_cast<float>(number(setting::kSpindleMin));
+  machine.is_laser = number(setting::kMode) == 1.0;
   if (known.lists_tokens) machine.tool_change_mode = static_cast<int>(number(setting::kToolChangeMode));
   for (const std::string_view id : {"N0", "N1"}) {
     const auto* const line = known.find_setting(id);

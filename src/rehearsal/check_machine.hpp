@@ -38,6 +38,8 @@ struct CheckMachine {
   /// `$30` and `$31`; 0 where they are not known.
   float spindle_rpm_max = 0;
   float spindle_rpm_min = 0;
+  /// `$32`=1, whether or not this build can use it.
+  bool is_laser = false;
   /// Somebody has said that a probe can make contact.
   bool has_probe = false;
   /// grblHAL `$341`: M6 raises the tool, or measures it, and wants these axes homed first; the plane's upright axis

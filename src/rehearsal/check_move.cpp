@@ -86,15 +86,17 @@ MoveKind CutWatch::kind_of(const CheckedMove& move) {
   }
   const float up = move.to_mm[kZ] - move.from_mm[kZ];
   const bool goes_sideways = move.goes_sideways();
+  const bool is_below_zero = has_axis(move.known_to, kZ) && move.to_mm[kZ] - move.work_offset_mm[kZ] < -kSameHeightMm;
   if (up < -kSameHeightMm) {
     is_down_ = true;
-    return goes_sideways ? MoveKind::Cut : MoveKind::Plunge;
+    if (goes_sideways) return MoveKind::Cut;
+    // Above the zero it may only come near the stock: what it does next will show.
+    return is_below_zero || !has_axis(move.known_to, kZ) ? MoveKind::Plunge : MoveKind::Approach;
   }
   if (!goes_sideways) {
     is_down_ = is_down_ && up <= kSameHeightMm;
     return MoveKind::Air;
   }
-  const bool is_below_zero = has_axis(move.known_to, kZ) && move.to_mm[kZ] - move.work_offset_mm[kZ] < -kSameHeightMm;
   return is_down_ || is_below_zero ? MoveKind::Cut : MoveKind::Air;
 }
 

@@ -45,9 +45,10 @@ struct CheckedLine {
 /// What a move does to the work.
 enum class MoveKind : std::uint8_t {
   Rapid,
-  Plunge,  ///< fed straight down
-  Cut,     ///< fed sideways, in the material as far as one can tell
-  Air,     ///< fed, but not in the material
+  Plunge,    ///< fed straight down into the material
+  Approach,  ///< fed straight down, and not below the work zero: through the air, or into stock that stands on it
+  Cut,       ///< fed sideways, in the material as far as one can tell
+  Air,       ///< fed, but not in the material
   Probe,
 };
 

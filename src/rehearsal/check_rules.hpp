@@ -59,7 +59,8 @@ class TravelRule {
 
   [[nodiscard]] std::optional<Excess> excess_at(const AxisValues& place_mm, AxisMask axes, float tolerance_mm) const;
   [[nodiscard]] std::optional<Excess> excess_on_arc(const CheckedMove& move, AxisMask axes, bool as_cut) const;
-  void check_place(const CheckedMove& move, AxisMask axes, FindingKind kind, Findings& findings) const;
+  [[nodiscard]] AxisMask still_outside(const CheckedMove& move);
+  void check_place(const CheckedMove& move, AxisMask axes, FindingKind kind, Findings& findings);
   [[nodiscard]] bool is_within_spans(const CheckedMove& move) const;
   void check_span(const CheckedMove& move, Findings& findings);
   void extend(const CheckedMove& move, const AxisValues& place_mm, AxisMask axes, Findings& findings);
@@ -70,6 +71,7 @@ class TravelRule {
   AxisMask measured_ = 0;
   std::array<Span, kMaxAxes> spans_{};
   AxisMask told_ = 0;
+  AxisMask outside_ = 0;
   std::uint32_t frame_ = 0;
 };
 

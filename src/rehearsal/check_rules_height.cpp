@@ -26,7 +26,7 @@ std::size_t field_at(float x_mm, float y_mm) {
 }  // namespace
 
 HeightRule::HeightRule(const CheckMachine& machine)
-    : is_on_(!machine.reader.settings().laser_mode && !machine.reader.settings().lathe_mode) {
+    : is_on_(!machine.is_laser && !machine.reader.settings().lathe_mode) {
   if (is_on_) deepest_mm_.resize(kFields * kFields, std::numeric_limits<float>::max());
 }
 
@@ -134,7 +134,7 @@ void HeightRule::on_feed(const CheckedMove& move) {
     const float height = std::min(move.from_mm[kZ], move.to_mm[kZ]);
     highest_cut_mm_ = std::max(highest_cut_mm_.value_or(height), height);
   }
-  if (move.kind == MoveKind::Cut || move.kind == MoveKind::Plunge) mark_cut(move);
+  if (move.kind != MoveKind::Air) mark_cut(move);
 }
 
 void HeightRule::on_move(const CheckedMove& move, Findings& findings) {

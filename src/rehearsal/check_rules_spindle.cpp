@@ -49,7 +49,7 @@ void SpindleRule::on_line(const CheckedLine& line, Actions actions, Findings& fi
   }
   if (start_in(actions) == nullptr) return;
   was_on_ = true;
-  if (!has_speed_ && !start_without_speed_ && !machine_.reader.settings().laser_mode) {
+  if (!has_speed_ && !start_without_speed_ && !machine_.is_laser) {
     start_without_speed_ = RememberedLine(line);
   }
 }
@@ -77,7 +77,7 @@ void SpindleRule::at_end(Findings& findings) const {
                [] { return "The program never starts a spindle or a laser."; });
 }
 
-LaserRule::LaserRule(const CheckMachine& machine) : is_on_(!machine.reader.settings().laser_mode) {}
+LaserRule::LaserRule(const CheckMachine& machine) : is_on_(!machine.is_laser) {}
 
 void LaserRule::on_line(const CheckedLine& line, Actions actions, Findings& findings) {
   if (!is_on_) return;

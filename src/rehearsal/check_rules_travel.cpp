@@ -71,9 +71,17 @@ std::optional<TravelRule::Excess> TravelRule::excess_on_arc(const CheckedMove& m
   return worst;
 }
 
-void TravelRule::check_place(const CheckedMove& move, AxisMask axes, FindingKind kind, Findings& findings) const {
+/// An axis that stays where it was told to be outside.
+AxisMask TravelRule::still_outside(const CheckedMove& move) {
+  for (std::size_t axis = 0; outside_ != 0 && axis < kMaxAxes; ++axis) {
+    if (move.to_mm.at(axis) != move.from_mm.at(axis)) outside_ = static_cast<AxisMask>(outside_ & ~axis_bit(axis));
+  }
+  return outside_;
+}
+
+void TravelRule::check_place(const CheckedMove& move, AxisMask axes, FindingKind kind, Findings& findings) {
   const bool is_guarded = kind == FindingKind::SoftLimit;
-  axes = static_cast<AxisMask>(axes & move.known_to);
+  axes = static_cast<AxisMask>(axes & move.known_to & ~still_outside(move));
   if (axes == 0) return;
   auto excess = excess_at(move.to_mm, axes, is_guarded ? 0.0F : kToleranceMm);
   bool is_on_the_way = false;
@@ -82,6 +90,7 @@ void TravelRule::check_place(const CheckedMove& move, AxisMask axes, FindingKind
     is_on_the_way = excess.has_value();
   }
   if (!excess) return;
+  outside_ = static_cast<AxisMask>(outside_ | axis_bit(excess->axis));
   findings.add(
       kind, move.line.number, move.line.text,
       [&] {

@@ -1,0 +1,29 @@
+; In the manner of Carbide Create
+%
+(stockMin:0.00mm, -100.00mm, -10.00mm)
+(stockMax:100.00mm, 0.00mm, 0.00mm)
+(TOOL/MILL,3.17, 0.00, 20.00, 0)
+G21
+G90
+(Move to safe Z to avoid workholding)
+G53G0Z-5.000
+(Toolpath)
+M3S18000
+(PREPOSITION FOR RAPID PLUNGE)
+G0X20.000Y-20.000
+Z0.500
+G1Z-1.500F228.6
+X60.000F914.4
+Y-60.000
+X20.000
+Y-20.000
+Z-3.000F228.6
+X60.000F914.4
+Y-60.000
+X20.000
+Y-20.000
+(END)
+G0Z12.000
+M5
+M30
+%

@@ -1,0 +1,20 @@
+; Facing in increments, by hand
+G21 G90 G94 G17
+S8000 M3
+G0 Z5
+G0 X0 Y0
+G0 Z1
+G1 Z-0.3 F150
+G91 F1200
+G1 X80
+Y6
+X-80
+Y6
+X80
+Y6
+X-80
+G90
+G0 Z5
+M5
+G0 X0 Y0
+M2

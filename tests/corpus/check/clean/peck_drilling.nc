@@ -1,0 +1,24 @@
+; Pecks written out, with rapids back into the hole
+G21 G90 G94 G17 G54
+M3 S6000
+G4 P2
+G0 Z5
+G0 X10 Y10
+G0 Z1
+G1 Z-2 F120
+G0 Z1
+G0 Z-1.8
+G1 Z-4
+G0 Z1
+G0 Z-3.8
+G1 Z-6
+G0 Z5
+G0 X30 Y10
+G0 Z1
+G1 Z-2
+G0 Z1
+G0 Z-1.8
+G1 Z-4
+G0 Z5
+M5
+M30

@@ -1,0 +1,23 @@
+; The same part at two zeros, in machine coordinates between them
+G21 G90 G94 G17
+G10 L2 P2 X-80 Y-200 Z-40
+M3 S10000
+G54
+G53 G0 Z-5
+G0 X0 Y0
+G0 Z2
+G1 Z-1 F300
+G1 X20 F900
+G2 X30 Y10 I0 J10
+G0 Z2
+G53 G0 Z-5
+G55
+G0 X0 Y0
+G0 Z2
+G1 Z-1 F300
+G1 X20 F900
+G2 X30 Y10 I0 J10
+G0 Z2
+G53 G0 Z-5
+M5
+M30

@@ -1,0 +1,11 @@
+; Faster than X goes
+G21 G90 G94 G17
+M3 S12000
+G0 Z10
+G0 X0 Y0
+G1 Z-1 F300
+G1 X100 F6500 ; finds: warning FeedTooHigh
+G1 X0 F5900
+G0 Z10
+M5
+M30

@@ -1,0 +1,10 @@
+; G53 with an arc
+G21 G90 G94 G17
+M3 S12000
+G0 Z10
+G0 X0 Y0
+G1 Z5 F300
+G53 G2 X-190 Y-200 I5 F300 ; finds: error Refused error:30
+G0 Z10
+M5
+M30

@@ -1,0 +1,12 @@
+; A tool change
+G21 G90 G94 G17
+M3 S12000
+G0 Z10
+G0 X10
+M5
+T2 M6 ; finds: note ToolChange
+M3 S9000
+G0 X20
+G0 Z10
+M5
+M30
