@@ -42,6 +42,8 @@ void add_run(CLI::App& kerf, Chosen& chosen);
 void add_resume(CLI::App& kerf, Chosen& chosen);
 /// `kerf audit`.
 void add_audit(CLI::App& kerf, Chosen& chosen);
+/// `kerf transform`.
+void add_transform(CLI::App& kerf, Chosen& chosen);
 /// `kerf virtual`.
 void add_virtual(CLI::App& kerf, Chosen& chosen);
 

@@ -232,6 +232,21 @@ struct PlotCommandOptions {
 };
 [[nodiscard]] ExitStatus plot(const PlotCommandOptions& options);
 
+/// An option that is a transform, as it was written.
+struct TransformStepText {
+  std::string option;  ///< "--rotate"
+  std::string value;
+};
+
+struct TransformOptions {
+  std::string file;
+  std::vector<TransformStepText> steps;  ///< in the order of the command line
+  std::string output;                    ///< empty or "-": standard output
+  bool previews = false;
+  std::string personality = "grblhal";  ///< it knows the most words
+};
+[[nodiscard]] ExitStatus transform(const TransformOptions& options);
+
 struct RecordOptions {
   std::string machine = kDefaultMachine;
   bool listens = false;        ///< send nothing at all

@@ -382,6 +382,7 @@ int start(int argc, char** argv) {
   add_estimate(kerf, chosen);
   add_check(kerf, chosen);
   kerf::apps::add_plot(kerf, chosen);
+  kerf::apps::add_transform(kerf, chosen);
   add_record(kerf, chosen);
   add_log(kerf, chosen);
   add_replay(kerf, chosen);

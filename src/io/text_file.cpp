@@ -2,13 +2,13 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <system_error>
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "io/file_replacement.hpp"
 
 namespace kerf::io {
 namespace {
@@ -20,24 +20,6 @@ using File = std::unique_ptr<std::FILE, FileCloser>;
 
 std::unexpected<FileError> failed(int error_number) {
   return std::unexpected(file_error(error_number));
-}
-
-/// What is half written goes away again.
-std::unexpected<FileError> failed_without(const std::string& new_path, int error_number) {
-  std::remove(new_path.c_str());
-  return failed(error_number);
-}
-
-/// The new name survives a power loss only once its folder is on the disk.
-std::expected<void, FileError> sync_folder_of(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return failed(errno);
-  const int error = ::fsync(descriptor) == 0 ? 0 : errno;
-  ::close(descriptor);
-  // Some file systems cannot; then nobody can do more.
-  if (error != 0 && error != EINVAL && error != ENOTSUP) return failed(error);
-  return {};
 }
 
 }  // namespace
@@ -73,16 +55,10 @@ std::expected<std::string, FileError> read_text_file(const std::string& path) {
 }
 
 std::expected<void, FileError> replace_text_file(const std::string& path, std::string_view text) {
-  const std::string new_path = path + ".new";
-  {
-    const File file(std::fopen(new_path.c_str(), "wbe"));
-    if (!file) return failed(errno);
-    const bool is_written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size() &&
-                            std::fflush(file.get()) == 0 && ::fsync(::fileno(file.get())) == 0;
-    if (!is_written) return failed_without(new_path, errno);
-  }
-  if (std::rename(new_path.c_str(), path.c_str()) != 0) return failed_without(new_path, errno);
-  return sync_folder_of(path);
+  auto file = FileReplacement::begin(path);
+  if (!file) return std::unexpected(std::move(file.error()));
+  if (auto written = file->write(text); !written) return written;
+  return file->commit();
 }
 
 std::string explain(const FileError& error, std::string_view path) {
