@@ -49,5 +49,7 @@ void add_virtual(CLI::App& kerf, Chosen& chosen);
 
 /// `kerf plot`.
 void add_plot(CLI::App& kerf, Chosen& chosen);
+/// `kerf report`.
+void add_report(CLI::App& kerf, Chosen& chosen);
 
 }  // namespace kerf::apps

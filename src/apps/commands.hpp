@@ -247,6 +247,15 @@ struct TransformOptions {
 };
 [[nodiscard]] ExitStatus transform(const TransformOptions& options);
 
+struct ReportOptions {
+  std::string file;
+  std::string output;
+  CaseMachineOptions virtual_machine;
+  std::string machine;  ///< not empty: asked for its firmware and settings
+  io::RecordingOptions recording{};
+};
+[[nodiscard]] ExitStatus report(const ReportOptions& options);
+
 struct RecordOptions {
   std::string machine = kDefaultMachine;
   bool listens = false;        ///< send nothing at all

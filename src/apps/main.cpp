@@ -383,6 +383,7 @@ int start(int argc, char** argv) {
   add_check(kerf, chosen);
   kerf::apps::add_plot(kerf, chosen);
   kerf::apps::add_transform(kerf, chosen);
+  kerf::apps::add_report(kerf, chosen);
   add_record(kerf, chosen);
   add_log(kerf, chosen);
   add_replay(kerf, chosen);

@@ -54,4 +54,23 @@ void add_plot(CLI::App& kerf, Chosen& chosen) {
   command->callback([&chosen, options] { chosen = [options] { return plot(*options); }; });
 }
 
+void add_report(CLI::App& kerf, Chosen& chosen) {
+  auto options = std::make_shared<ReportOptions>();
+  CLI::App* command =
+      kerf.add_subcommand("report", "Write a page about a job: pictures, times, findings, tools, limits");
+  command->add_option("FILE", options->file, "The G-code file")->required()->type_name("");
+  command->add_option("-o,--output", options->output, "The page, such as report.html")->required()->type_name("PAGE");
+  add_virtual_machine(*command, options->virtual_machine);
+  command->add_option("-m,--machine", options->machine, "Ask this machine for its firmware and settings; nothing moves")
+      ->type_name("URL")
+      ->excludes("--personality")
+      ->excludes("--settings");
+  add_recording(*command, options->recording);
+  command->footer(
+      "\nThe page needs neither network nor scripts, and is laid out for A4. Exit status as of 'kerf check': 0 nothing "
+      "to "
+      "worry about, 6 warnings, 3 errors.\n");
+  command->callback([&chosen, options] { chosen = [options] { return report(*options); }; });
+}
+
 }  // namespace kerf::apps

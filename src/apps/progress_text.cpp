@@ -55,12 +55,6 @@ std::string joined(const std::vector<std::string>& parts) {
 
 }  // namespace
 
-std::string clock_text(double seconds) {
-  const auto whole = static_cast<long>(std::max(0.0, seconds));
-  if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-  return fmt::format("{}:{:02}", whole / 60, whole % 60);
-}
-
 std::string position_text(const machine::Snapshot& snapshot) {
   const auto& in_mm = snapshot.work_position_mm ? snapshot.work_position_mm : snapshot.machine_position_mm;
   const auto& unitless =

@@ -3,13 +3,13 @@
 
 #include <string>
 
+#include "common/base/duration_text.hpp"
 #include "sender/job/job_state.hpp"
 #include "sender/machine/snapshot.hpp"
 
 namespace kerf::apps {
 
-/// "4:05", "1:02:09"; seconds are cut, not rounded.
-[[nodiscard]] std::string clock_text(double seconds);
+using base::clock_text;
 
 /// "X12.345 Y-3.000 Z0.500", the work position if it is known, else the machine position; axes are named in Grbl's
 /// order.

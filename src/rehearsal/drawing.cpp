@@ -200,8 +200,12 @@ std::string to_svg(const Drawing& drawing, SvgPlace place) {
     out += "\" height=\"";
     append_pixels(out, drawing.height_px);
   }
-  out += "\" role=\"img\" font-family=\"" + std::string{kFonts} + "\">\n<title>" + escape_markup(drawing.title) +
-         "</title>\n";
+  out += "\" font-family=\"" + std::string{kFonts};
+  if (drawing.title.empty()) {
+    out += "\" aria-hidden=\"true\">\n";
+  } else {
+    out += "\" role=\"img\">\n<title>" + escape_markup(drawing.title) + "</title>\n";
+  }
   if (place == SvgPlace::File) out += "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
   for (const DrawingItem& item : drawing.items) {
     std::visit(base::Overloaded{[&](const Strokes& strokes) { append_strokes(out, strokes); },

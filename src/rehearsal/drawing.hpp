@@ -65,7 +65,7 @@ using DrawingItem = std::variant<Strokes, Area, Label>;
 struct Drawing {
   double width_px = 0;
   double height_px = 0;
-  /// For those who cannot see it.
+  /// For those who cannot see it; empty when it only shows what is told beside it.
   std::string title;
   std::vector<DrawingItem> items;
 };

@@ -46,7 +46,7 @@ double round_step(double value) {
   return power;
 }
 
-std::string short_number(double value) {
+std::string paper_number(double value) {
   const double size = std::abs(value);
   const int decimals = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : 3;
   std::string text = base::to_fixed(value, decimals);

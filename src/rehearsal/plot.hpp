@@ -32,6 +32,6 @@ struct PlotOptions {
 [[nodiscard]] double round_step(double value);
 
 /// A length or place in mm without needless digits: "0.25", "12.5", "300"; with a real minus sign.
-[[nodiscard]] std::string short_number(double value);
+[[nodiscard]] std::string paper_number(double value);
 
 }  // namespace kerf::rehearsal

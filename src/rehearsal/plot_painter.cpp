@@ -157,7 +157,8 @@ void PathPainter::flush(std::size_t layer) {
   Layer& paint = layers_[layer];
   if (!paint.is_open) return;
   paint.is_open = false;
-  if (!cover(layer, paint.run_begin, paint.last)) {
+  const bool is_nothing = layer == 0 && paint.run_begin == paint.last;
+  if (is_nothing || !cover(layer, paint.run_begin, paint.last)) {
     paint.continues = false;
     return;
   }

@@ -111,10 +111,10 @@ std::string sizes_text(const PathBounds& bounds) {
   std::string text;
   for (std::size_t axis = 0; axis < (is_flat ? 2 : 3); ++axis) {
     if (axis > 0) text += kTimes;
-    text += short_number(static_cast<double>(bounds.size_mm(axis)));
+    text += paper_number(static_cast<double>(bounds.size_mm(axis)));
   }
-  text.append(" mm").append(kDot).append("Z ").append(short_number(least_of(bounds, 2)));
-  return is_flat ? text : text + " to " + short_number(most_of(bounds, 2)) + " mm";
+  text.append(" mm").append(kDot).append("Z ").append(paper_number(least_of(bounds, 2)));
+  return is_flat ? text : text + " to " + paper_number(most_of(bounds, 2)) + " mm";
 }
 
 /// The words of a name that fit into one line, and the others.
@@ -225,12 +225,12 @@ void PlotSheet::draw_before(Drawing& drawing) const {
 }
 
 void PlotSheet::draw_grid(Drawing& drawing) const {
-  constexpr double kLeastCell_px = 52;
+  const double least_cell_px = options_.is_sheet ? 52 : 36;
   const FlatAxes axes = flat_axes_of(options_.view);
   const double scale = projection_.px_per_mm;
   // The greatest round step may be up to 2.5 times too small: take the least that leaves room for numbers.
-  double step = round_step(kLeastCell_px / scale);
-  while (step * scale < kLeastCell_px) step = round_step(step * 2.51);
+  double step = round_step(least_cell_px / scale);
+  while (step * scale < least_cell_px) step = round_step(step * 2.51);
   Strokes lines{.ink = {.colour = kGrid, .width_px = 1}, .points = {}, .ends = {}};
   Strokes zero_lines{.ink = {.colour = kZeroLine, .width_px = 1}, .points = {}, .ends = {}};
   std::vector<Label> labels;
@@ -246,12 +246,12 @@ void PlotSheet::draw_grid(Drawing& drawing) const {
       if (across) {
         const double x = projection_.zero.x + value * scale;
         into.add({{x, from_.y}, {x, to_.y}});
-        labels.push_back({.at = {x, to_.y + text_px() * 1.4}, .text = short_number(value), .anchor = Anchor::Middle});
+        labels.push_back({.at = {x, to_.y + text_px() * 1.4}, .text = paper_number(value), .anchor = Anchor::Middle});
       } else {
         const double y = projection_.zero.y - value * scale;
         into.add({{from_.x, y}, {to_.x, y}});
         labels.push_back(
-            {.at = {from_.x - 6, y + text_px() * 0.35}, .text = short_number(value), .anchor = Anchor::End});
+            {.at = {from_.x - 6, y + text_px() * 0.35}, .text = paper_number(value), .anchor = Anchor::End});
       }
     }
   }
@@ -263,7 +263,7 @@ void PlotSheet::draw_grid(Drawing& drawing) const {
   for (Label& label : labels) {
     // The corner is for the axis names.
     const bool is_near_name =
-        label.anchor == Anchor::Middle ? label.at.x > to_.x - text_px() * 2.2 : label.at.y < from_.y + text_px() * 1.6;
+        label.anchor == Anchor::Middle ? label.at.x > to_.x - text_px() * 2.2 : label.at.y < from_.y + text_px() * 2.2;
     if (is_near_name) continue;
     label.size_px = text_px();
     label.colour = kSoftText;
@@ -292,7 +292,7 @@ void PlotSheet::draw_floor(Drawing& drawing) const {
   const double floor_mm = least_of(shown_, 2);
   for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
     const std::size_t other = 1 - axis;
-    if (most_of(shown_, axis) - least_of(shown_, axis) > kMostLines * step) continue;
+    if (most_of(shown_, axis) - least_of(shown_, axis) > kMostLines * step || shown_.size_mm(other) <= 0) continue;
     for (double index = std::ceil(least_of(shown_, axis) / step); index * step <= most_of(shown_, axis); ++index) {
       Place from{0, 0, floor_mm};
       from.at(axis) = index * step;
@@ -326,7 +326,7 @@ void PlotSheet::draw_sizes(Drawing& drawing) const {
     if (shown_.size_mm(axis) <= 0) return;
     draw_text(drawing, {.at = at,
                         .text = std::string{kAxisNames[axis]} + "  " +
-                                short_number(static_cast<double>(shown_.size_mm(axis))) + " mm",
+                                paper_number(static_cast<double>(shown_.size_mm(axis))) + " mm",
                         .size_px = size,
                         .colour = kSoftText,
                         .anchor = Anchor::Middle,
@@ -385,7 +385,7 @@ void PlotSheet::draw_scale_bar(Drawing& drawing, double y) const {
   const double end = x + length_mm * px_per_mm;
   draw_line(drawing, {.colour = kText, .width_px = 1.5}, {{x, y - 5}, {x, y}, {end, y}, {end, y - 5}});
   draw_text(drawing, {.at = {x, y + 17},
-                      .text = short_number(length_mm) + (is_flat ? " mm" : " mm along an axis"),
+                      .text = paper_number(length_mm) + (is_flat ? " mm" : " mm along an axis"),
                       .size_px = 12,
                       .colour = kText});
 }
@@ -454,7 +454,7 @@ double PlotSheet::draw_scale(Drawing& drawing, double y) const {
   if (scale.size() <= 0) {
     draw_line(drawing, {.colour = colours_.colour(0), .width_px = 3}, {{x + 1, y - 4}, {x + 23, y - 4}});
     draw_text(drawing, {.at = {x + 34, y},
-                        .text = scale.is_empty() ? "Cut" : short_number(scale.most),
+                        .text = scale.is_empty() ? "Cut" : paper_number(scale.most),
                         .size_px = 12,
                         .colour = kText});
     return y + 22;
@@ -473,7 +473,7 @@ double PlotSheet::draw_scale(Drawing& drawing, double y) const {
     const double at = top + kScale_px * (1 - share);
     draw_line(drawing, {.colour = kSoftText, .width_px = 1}, {{x + kWidth_px + 2, at}, {x + kWidth_px + 7, at}});
     draw_text(drawing, {.at = {x + kWidth_px + 13, at + 4},
-                        .text = short_number(std::lerp(scale.least, scale.most, share)),
+                        .text = paper_number(std::lerp(scale.least, scale.most, share)),
                         .size_px = 12,
                         .colour = kText});
   }

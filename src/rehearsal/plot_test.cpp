@@ -87,10 +87,10 @@ TEST(Plot, StepsAreRound) {
   EXPECT_EQ(round_step(7.3), 5);
   EXPECT_EQ(round_step(10), 10);
   EXPECT_EQ(round_step(0.034), 0.02);
-  EXPECT_EQ(short_number(12.50), "12.5");
-  EXPECT_EQ(short_number(0.25), "0.25");
-  EXPECT_EQ(short_number(299.96), "300");
-  EXPECT_EQ(short_number(-0.0001), "0");
+  EXPECT_EQ(paper_number(12.50), "12.5");
+  EXPECT_EQ(paper_number(0.25), "0.25");
+  EXPECT_EQ(paper_number(299.96), "300");
+  EXPECT_EQ(paper_number(-0.0001), "0");
 }
 
 }  // namespace

@@ -172,6 +172,7 @@ void ToolpathReader::add_move(const AxisValues& target_mm, const gcode::Feed& fe
   vertex.time_s = last_.time_s + seconds_of(target_mm, feed, length_of(last_.at_mm, vertex));
   if (unknown_axes_between(last_, vertex) == 0) include_motion(chunk.bounds, last_.at_mm, vertex);
   at_mm_ = target_mm;
+  (walk_.reader().state().modal.inches ? uses_inches_ : uses_mm_) = true;
   push(vertex, chunk);
 }
 

@@ -41,6 +41,9 @@ class ToolpathReader {
   [[nodiscard]] double time_s() const { return last_.time_s; }
   [[nodiscard]] std::size_t read_bytes() const { return walk_.read_bytes(); }
   [[nodiscard]] std::uint32_t refused_lines() const { return walk_.refused_lines(); }
+  /// Motion was told in inches (G20), or in millimetres.
+  [[nodiscard]] bool uses_inches() const { return uses_inches_; }
+  [[nodiscard]] bool uses_mm() const { return uses_mm_; }
   /// Names by PathVertex::operation; the first is "".
   [[nodiscard]] const std::vector<std::string>& operations() const { return walk_.operations(); }
 
@@ -67,6 +70,8 @@ class ToolpathReader {
   /// Axes that are known, or not, once this line's motion is over.
   vocabulary::AxisMask known_after_ = 0;
   vocabulary::AxisMask unknown_after_ = 0;
+  bool uses_inches_ = false;
+  bool uses_mm_ = false;
   bool has_had_power_ = false;
   bool tool_is_new_ = false;
   PathBounds bounds_;

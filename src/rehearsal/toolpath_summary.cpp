@@ -66,6 +66,8 @@ PathSummary PathSummer::finish(const ToolpathReader& reader) {
   sum_.operation_names = reader.operations();
   sum_.time_s = reader.time_s();
   sum_.refused_lines = reader.refused_lines();
+  sum_.uses_inches = reader.uses_inches();
+  sum_.uses_mm = reader.uses_mm();
   return std::move(sum_);
 }
 

@@ -53,6 +53,8 @@ struct PathSummary {
   /// As PathVertex::time_s.
   double time_s = 0;
   std::uint32_t refused_lines = 0;
+  bool uses_inches = false;
+  bool uses_mm = false;
 };
 
 /// Adds up chunks in their order.

@@ -1,4 +1,4 @@
-"""plot: pictures of programs."""
+"""plot and report: pictures of programs, and pages about them."""
 
 import os
 import struct
@@ -56,6 +56,38 @@ class Plot(LiveTest):
         self.assert_complains(kerf("plot", part, "-o", "/nowhere/a.svg"), USAGE, "/nowhere/a.svg")
         still = self.file("still.nc", "G21 G90\nM3 S1\n")
         self.assert_complains(kerf("plot", still, "-o", "a.svg"), USAGE, "moves nothing")
+
+
+class Report(LiveTest):
+    def page(self, *arguments, status=DONE):
+        path = os.path.join(self.folder, "report.html")
+        result = kerf("report", *arguments, "-o", path)
+        self.assertEqual(result.returncode, status, result.stderr)
+        with open(path, encoding="utf-8") as file:
+            return file.read()
+
+    def test_one_page_that_needs_nothing_else(self):
+        page = self.page(example("coaster.nc"), "--settings", self.file("machine.settings", "$30=24000\n$110=3000\n"))
+        for words in ("coaster.nc", "machine.settings", "Nothing against it", "Thumb notch", "T2", "Soft limits"):
+            self.assertIn(words, page)
+        self.assertEqual(page.count("<svg"), page.count("</svg>"))
+        for outside in ("<script", "<link", "<img", "url("):
+            self.assertNotIn(outside, page)
+
+    def test_of_a_machine_that_is_asked(self):
+        page = self.page(example("coaster.nc"), "--machine", "virtual:rabbit")
+        self.assertIn("Rabbit", page)
+        self.assertIn("the settings of virtual:rabbit", page)
+
+    def test_errors_are_the_exit_status(self):
+        page = self.page(self.file("part.nc", "G21 G90\nG1 X1 F100\nG99.7 (<b>)\n"), status=REFUSED)
+        self.assertIn("G99.7 (&lt;b&gt;)", page)
+        self.assertNotIn("<b>", page)
+
+    def test_wrong_wishes_are_explained(self):
+        part = self.file("part.nc", "G21 G90\nG1 X1 F100\n")
+        self.assert_complains(kerf("report", "none.nc", "-o", "a.html"), USAGE, "none.nc")
+        self.assert_complains(kerf("report", part, "-o", "/nowhere/a.html"), USAGE, "/nowhere/a.html")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 #include "common/base/duration_text.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
 
 #include "common/base/text.hpp"
@@ -17,6 +19,19 @@ std::optional<Duration> parse_duration(std::string_view text) {
     return from_seconds(*number * seconds);
   }
   return std::nullopt;
+}
+
+std::string clock_text(double seconds) {
+  constexpr std::int64_t kMinute = 60;
+  constexpr std::int64_t kHour = 3600;
+  // Longer than any job, and within the range of the integer.
+  constexpr double kMost = 1e12;
+  const auto whole = static_cast<std::int64_t>(std::clamp(seconds, 0.0, kMost));
+  const auto two_digits = [](std::int64_t value) { return (value < 10 ? "0" : "") + std::to_string(value); };
+  const std::string minutes = whole >= kHour
+                                  ? std::to_string(whole / kHour) + ":" + two_digits(whole / kMinute % kMinute)
+                                  : std::to_string(whole / kMinute);
+  return minutes + ":" + two_digits(whole % kMinute);
 }
 
 }  // namespace kerf::base
