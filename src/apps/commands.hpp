@@ -47,6 +47,7 @@ struct RunOptions {
   std::string file;
   std::string machine = kDefaultMachine;
   bool json = false;
+  bool despite_errors = false;  ///< of the check before the job
   ResumeChoices start{};
   io::RecordingOptions recording{};
   JobChoices job{};

@@ -109,6 +109,8 @@ void add_run(CLI::App& kerf, Chosen& chosen) {
   add_machine(*command, options->machine, options->recording);
   add_journal(*command, options->recording.journal);
   command->add_flag("--json", options->json, "Print events as JSON, one object a line, instead of the progress");
+  command->add_flag("--despite-errors", options->despite_errors,
+                    "Start although the check of the program found lines that this machine refuses (docs/check.md)");
   CLI::Option* from_line =
       command
           ->add_option("--from-line", options->start.from_line,

@@ -12,8 +12,12 @@
 
 namespace kerf::apps {
 
-/// Nothing to do before the machine tells more.
-struct KeepWaiting {};
+/// Nothing to do before the machine tells more, or a piece of work is done of many: then it asks again at once.
+struct KeepWaiting {
+  bool is_at_work = false;
+  /// Said once; empty: nothing.
+  std::string sentence{};
+};
 /// What is shown before a question, a job or an end: lines for people, and the same as one JSON event (null: none).
 struct Told {
   std::vector<std::string> lines{};

@@ -87,22 +87,15 @@ std::string held_sentence(const job::JobState& job) {
 
 }  // namespace
 
-JobRunner::JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<const job::Program> program,
-                     const session::JobOptions& options, JobView& view, bool can_ask, job::JobOrigin origin)
+JobRunner::JobRunner(io::EventLoop& loop, io::MachineUrl url, std::unique_ptr<JobPreparation> preparation,
+                     const session::JobOptions& options, JobView& view, bool can_ask)
     : loop_(loop),
       url_(std::move(url)),
-      program_(std::move(program)),
       options_(options),
-      origin_(std::move(origin)),
+      preparation_(std::move(preparation)),
       view_(view),
       can_ask_(can_ask),
       redraw_(loop) {}
-
-JobRunner::JobRunner(io::EventLoop& loop, io::MachineUrl url, std::unique_ptr<JobPreparation> preparation,
-                     const session::JobOptions& options, JobView& view, bool can_ask)
-    : JobRunner(loop, std::move(url), nullptr, options, view, can_ask, {}) {
-  preparation_ = std::move(preparation);
-}
 
 ExitStatus JobRunner::run(const io::RecordingOptions& recording) {
   constexpr std::array<int, 4> kSignals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};
@@ -127,14 +120,18 @@ void JobRunner::on_event(const session::Event& event) {
 }
 
 void JobRunner::go_on_preparing() {
+  is_at_work_ = false;
   std::visit([this](const auto& next) { follow(next); }, preparation_->next(loop_.now(), host_->session()));
   if (!is_preparing_ || status_) return;
-  redraw_.arm(loop_.now() + kRedraw, [this] {
+  redraw_.arm(loop_.now() + (is_at_work_ ? Duration::zero() : kRedraw), [this] {
     if (is_preparing_ && !status_) go_on_preparing();
   });
 }
 
-void JobRunner::follow(const KeepWaiting&) {}
+void JobRunner::follow(const KeepWaiting& wait) {
+  is_at_work_ = wait.is_at_work;
+  if (!wait.sentence.empty()) view_.noted(wait.sentence);
+}
 
 void JobRunner::follow(const session::Command& command) {
   if (std::holds_alternative<session::Home>(command)) view_.noted("Homing.");
@@ -151,11 +148,10 @@ void JobRunner::follow(const AskOperator& question) {
 void JobRunner::follow(const BeginJob& begin) {
   view_.told(begin.told);
   is_preparing_ = false;
-  program_ = begin.job.program;
-  if (program_ == nullptr) return fail("The rest of the program cannot be sent.", ExitStatus::Usage);
+  if (begin.job.program == nullptr) return fail("The rest of the program cannot be sent.", ExitStatus::Usage);
   session::StartJob job = begin.job;
   job.options = options_;
-  job.timeline = rehearse(*program_, host_->session().capabilities(), clock_speed(url_));
+  job.timeline = rehearse(*job.program, host_->session().capabilities(), clock_speed(url_));
   host_->submit(job);
 }
 
@@ -175,16 +171,8 @@ void JobRunner::answer(char key) {
 
 void JobRunner::on(const session::ControllerFound& found) {
   if (is_started_) return;
-  const auto& capabilities = host_->session().capabilities();
-  view_.found(found.sentence, capabilities);
-  if (preparation_ != nullptr) {
-    is_preparing_ = true;
-    return;
-  }
-  host_->submit(session::StartJob{.program = program_,
-                                  .timeline = rehearse(*program_, capabilities, clock_speed(url_)),
-                                  .origin = origin_,
-                                  .options = options_});
+  view_.found(found.sentence, host_->session().capabilities());
+  is_preparing_ = true;
 }
 
 void JobRunner::on(const session::ControllerReset& reset) {

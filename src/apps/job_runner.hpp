@@ -17,10 +17,8 @@ namespace kerf::apps {
 
 class JobRunner {
  public:
-  /// `can_ask`: there is a terminal whose keys answer questions. `origin` is for the journal.
-  JobRunner(io::EventLoop& loop, io::MachineUrl url, std::shared_ptr<const job::Program> program,
-            const session::JobOptions& options, JobView& view, bool can_ask, job::JobOrigin origin);
-  /// The job is what `preparation` makes of the machine that is found.
+  /// The job is what `preparation` makes of the machine that is found. `can_ask`: there is a terminal whose keys answer
+  /// questions.
   JobRunner(io::EventLoop& loop, io::MachineUrl url, std::unique_ptr<JobPreparation> preparation,
             const session::JobOptions& options, JobView& view, bool can_ask);
 
@@ -33,7 +31,7 @@ class JobRunner {
 
   void on_event(const session::Event& event);
   void go_on_preparing();
-  void follow(const KeepWaiting& nothing);
+  void follow(const KeepWaiting& wait);
   void follow(const session::Command& command);
   void follow(const AskOperator& question);
   void follow(const BeginJob& begin);
@@ -75,11 +73,10 @@ class JobRunner {
 
   io::EventLoop& loop_;
   const io::MachineUrl url_;
-  std::shared_ptr<const job::Program> program_;
   const session::JobOptions options_;
-  const job::JobOrigin origin_;
   std::unique_ptr<JobPreparation> preparation_;
   bool is_preparing_ = false;
+  bool is_at_work_ = false;
   bool awaits_answer_ = false;
   JobView& view_;
   const bool can_ask_;

@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include "apps/checked_job.hpp"
 #include "apps/commands.hpp"
 #include "apps/job_runner.hpp"
 #include "apps/job_view.hpp"
@@ -27,8 +28,13 @@ ExitStatus run(const RunOptions& options) {
   io::EventLoop loop;
   const bool can_ask = !options.json && is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO);
   std::error_code ignored;
-  JobRunner runner(loop, *url, file->program(), options.job.settled(can_ask), *view, can_ask,
-                   {.path = std::filesystem::absolute(options.file, ignored).string()});
+  const session::JobOptions job = options.job.settled(can_ask);
+  JobRunner runner(loop, *url,
+                   prepare_checked_job({.program = file->program(),
+                                        .origin = {.path = std::filesystem::absolute(options.file, ignored).string()},
+                                        .options = job,
+                                        .despite_errors = options.despite_errors}),
+                   job, *view, can_ask);
   return runner.run(options.recording);
 }
 

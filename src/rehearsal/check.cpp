@@ -11,6 +11,7 @@
 #include "common/base/text.hpp"
 #include "common/gcode/line_reader.hpp"
 #include "common/motion/arc_extent.hpp"
+#include "common/protocol/secrets.hpp"
 #include "common/vocabulary/codes.hpp"
 #include "rehearsal/check_rules.hpp"
 #include "rehearsal/sent_lines.hpp"
@@ -165,7 +166,7 @@ class Checker::Reading {
   Reading(const job::Program& program, CheckMachine machine, job::WireForm form)
       : program_(program),
         machine_(std::move(machine)),
-        lines_(program, *machine_.dialect, form),
+        lines_(program, form, machine_.tool_changes),
         reader_(machine_.reader),
         line_reader_(reader_.rules().line),
         whereabouts_(machine_),
@@ -324,8 +325,9 @@ class Checker::Reading {
   }
 
   void command(const SentLine& line) {
-    findings_.add(FindingKind::ControllerCommand, line.number, line.text,
-                  [&] { return "'" + std::string{line.wire} + "' is no G-code."; });
+    // It may hold a password.
+    const std::string shown = protocol::Secrets{}.hidden(line.wire);
+    findings_.add(FindingKind::ControllerCommand, line.number, shown, [&] { return "'" + shown + "' is no G-code."; });
     whereabouts_.lose();
   }
 

@@ -8,6 +8,7 @@
 #include "common/base/text.hpp"
 #include "firmware/settings_store.hpp"
 #include "rehearsal/program_walk.hpp"
+#include "rehearsal/sent_lines.hpp"
 #include "sender/machine/controller_rules.hpp"
 #include "sender/machine/explanation_evidence.hpp"
 #include "sender/machine/line_tracker.hpp"
@@ -73,6 +74,7 @@ CheckMachine check_machine_of(const simulation::CaseMachine& described, const Ch
   static_cast<void>(store.load(described.stored));
   CheckMachine machine{.dialect = &personality.dialect()};
   machine.reader = interpreter_of(described);
+  machine.tool_changes = tool_changes_on(*machine.dialect);
   machine.motion = store.motion();
   const bool homes = store.flag(setting::kHoming);
   // Who says where the work zero lies trusts machine coordinates.
@@ -116,6 +118,7 @@ CheckMachine check_machine_of(const machine::Capabilities& known, const machine:
   CheckMachine machine{.dialect = &vocabulary::dialect_of(known.family)};
   const auto number = [&](int id) { return machine::setting_number(known, id).value_or(0); };
   const gcode::InterpreterSettings settings = machine::interpreter_settings_of(known);
+  machine.tool_changes = job::tool_changes_on(known.features.tool_change);
   machine.motion = machine::motion_settings_of(known);
   machine::LineTracker tracker;
   tracker.seed(snapshot, *machine.dialect, settings);

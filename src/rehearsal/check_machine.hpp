@@ -11,6 +11,7 @@
 #include "common/vocabulary/axis.hpp"
 #include "common/vocabulary/dialect.hpp"
 #include "common/vocabulary/travel.hpp"
+#include "sender/job/program_flow.hpp"
 #include "sender/machine/capabilities.hpp"
 #include "sender/machine/snapshot.hpp"
 #include "simulation/case_runner.hpp"
@@ -42,6 +43,7 @@ struct CheckMachine {
   bool is_laser = false;
   /// Somebody has said that a probe can make contact.
   bool has_probe = false;
+  job::ToolChanges tool_changes = job::ToolChanges::ByOperator;
   /// grblHAL `$341`: M6 raises the tool, or measures it, and wants these axes homed first; the plane's upright axis
   /// alone where that is all.
   int tool_change_mode = 0;

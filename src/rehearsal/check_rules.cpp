@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "common/protocol/secrets.hpp"
 #include "sender/job/program_flow.hpp"
 #include "sender/machine/startup_line.hpp"
 
@@ -41,7 +42,8 @@ void StartupRule::begin(Findings& findings) const {
   for (const std::string& line : machine_.startup_lines) {
     const std::string deed = machine::deed_of_startup_line(line);
     if (deed.empty()) continue;
-    findings.add(FindingKind::StartupLine, 0, line, [&] { return "The startup line '" + line + "' " + deed + "."; });
+    const std::string shown = protocol::Secrets{}.hidden(line);
+    findings.add(FindingKind::StartupLine, 0, shown, [&] { return "The startup line '" + shown + "' " + deed + "."; });
   }
 }
 

@@ -3,20 +3,17 @@
 #include <utility>
 
 namespace kerf::rehearsal {
-namespace {
 
-job::ToolChanges changes_on(const vocabulary::Dialect& dialect) {
+job::ToolChanges tool_changes_on(const vocabulary::Dialect& dialect) {
   using vocabulary::ToolChangeRule;
   return dialect.tool_change == ToolChangeRule::AsTold ? job::ToolChanges::ByController : job::ToolChanges::ByOperator;
 }
 
-}  // namespace
-
 SentLines::SentLines(const job::Program& program, const vocabulary::Dialect& dialect)
-    : SentLines(program, dialect, job::wire_form_of(dialect)) {}
+    : SentLines(program, job::wire_form_of(dialect), tool_changes_on(dialect)) {}
 
-SentLines::SentLines(const job::Program& program, const vocabulary::Dialect& dialect, job::WireForm form)
-    : program_(&program), form_(form), flow_(changes_on(dialect), false) {}
+SentLines::SentLines(const job::Program& program, job::WireForm form, job::ToolChanges changes)
+    : program_(&program), form_(form), flow_(changes, false) {}
 
 std::optional<SentLine> SentLines::next() {
   const auto line = program_->line_at(offset_bytes_, next_number_);

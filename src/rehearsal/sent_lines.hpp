@@ -23,13 +23,16 @@ struct SentLine {
   std::optional<job::ToolGate> tool_change{};
 };
 
+/// Who changes tools on a controller of which only the firmware is known.
+[[nodiscard]] job::ToolChanges tool_changes_on(const vocabulary::Dialect& dialect);
+
 /// Reads a program from its first line to its last: changes of tools that a controller refuses are the operator's, and
 /// nothing comes behind the end of the program.
 class SentLines {
  public:
   /// Both must outlive it.
   SentLines(const job::Program& program, const vocabulary::Dialect& dialect);
-  SentLines(const job::Program& program, const vocabulary::Dialect& dialect, job::WireForm form);
+  SentLines(const job::Program& program, job::WireForm form, job::ToolChanges changes);
 
   /// Nothing behind the last line, and behind the end of the program.
   [[nodiscard]] std::optional<SentLine> next();

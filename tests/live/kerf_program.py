@@ -15,7 +15,7 @@ KERF = os.environ.get("KERF", "build/kerf")
 EXAMPLES = os.environ.get("KERF_EXAMPLES", "examples")
 PERSONALITIES = ("grbl", "rabbit", "grblhal")
 
-DONE, USAGE, NO_CONNECTION, REFUSED, ALARM, INTERRUPTED = range(6)
+DONE, USAGE, NO_CONNECTION, REFUSED, ALARM, INTERRUPTED, WARNED = range(7)
 
 
 def example(name):

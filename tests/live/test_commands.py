@@ -5,7 +5,8 @@ import os
 import signal
 import unittest
 
-from kerf_program import DONE, PERSONALITIES, REFUSED, LiveTest, OnTerminal, Running, VirtualMachine, kerf
+from kerf_program import (DONE, NO_CONNECTION, PERSONALITIES, REFUSED, USAGE, WARNED, LiveTest, OnTerminal, Running,
+                          VirtualMachine, kerf)
 
 FIRMWARES = {"grbl": "Grbl", "rabbit": "Rabbit GRBL", "grblhal": "grblHAL"}
 
@@ -53,6 +54,48 @@ class Estimate(LiveTest):
         result = kerf("estimate", self.file("part.nc", "G21\nG99.7\n"))
         self.assertEqual(result.returncode, REFUSED, result.stderr)
         self.assertIn("Line 2 would be refused: error:", result.stdout)
+
+
+class Check(LiveTest):
+    CLEAN = "G21 G90\nM3 S500\nG0 Z5\nG0 X5 Y5\nG1 Z-1 F100\nG1 X20 F300\nG0 Z5\nM5\nM30\n"
+
+    def test_clean_warned_refused(self):
+        for personality in PERSONALITIES:
+            for text, status, words in ((self.CLEAN, DONE, "nothing found"),
+                                        (self.CLEAN.replace("F300", "F99999"), WARNED, "line 6: G1 X20 F99999"),
+                                        (self.CLEAN.replace("F100", ""), REFUSED, "(error:22)")):
+                with self.subTest(f"{personality} {words}"):
+                    result = kerf("check", self.file("part.nc", text), "-p", personality)
+                    self.assertEqual(result.returncode, status, result.stdout + result.stderr)
+                    self.assertIn(words, result.stdout)
+
+    def test_a_machine_is_asked_where_it_stands(self):
+        part = self.file("part.nc", "G21 G90\nG0 X5 Y5\nG0 Z5\nM3 S500\nG1 Z-1 F100\nG1 X20\nG0 Z5\nM5\nM30\n")
+        with VirtualMachine("grbl") as machine:
+            result = kerf("check", part, "--machine", machine.url, "--json")
+        self.assertEqual(result.returncode, WARNED, result.stderr)
+        told = json.loads(result.stdout)
+        self.assertEqual((told["firmware"], told["worst"], told["warnings"]), ("Grbl", "Warning", 1))
+        finding = told["findings"][0]
+        self.assertEqual((finding["line"], finding["kind"]), (2, "RapidBelowCut"))
+        for key in ("text", "severity", "what", "reason", "next"):
+            self.assertTrue(finding[key], key)
+
+    def test_travel_with_a_zero(self):
+        part = self.file("part.nc", self.CLEAN)
+        settings = self.file("settings.txt", "$22=1\n$20=1\n$130=200\n$131=200\n$132=100\n")
+        check = ("check", part, "-p", "grbl", "--settings", settings)
+        self.assertEqual(kerf(*check, "--zero", "-100,-100,-50").returncode, DONE)
+        result = kerf(*check, "--zero", "-15,-100,-50")
+        self.assertEqual(result.returncode, REFUSED, result.stdout)
+        for words in ("ALARM:2", "line 6: G1 X20 F300", "5 mm beyond the travel from -200 to 0"):
+            self.assertIn(words, result.stdout)
+
+    def test_what_cannot_be_used_is_named(self):
+        part = self.file("part.nc", self.CLEAN)
+        self.assert_complains(kerf("check", part, "--zero", "1,here"), USAGE, "1,here", "--zero")
+        self.assert_complains(kerf("check", part + "x"), USAGE, "part.ncx")
+        self.assert_complains(kerf("check", part, "-m", "tcp://127.0.0.1:1"), NO_CONNECTION, "127.0.0.1:1")
 
 
 class Console(LiveTest):

@@ -70,12 +70,33 @@ class Jobs(LiveTest):
         program = self.file("bad.nc", "G21\nG0 X1\nM77 X5\nG0 X2\n")
         for personality in PERSONALITIES:
             with self.subTest(personality):
-                result = kerf("run", program, "--machine", f"virtual:{personality}?speed=max")
+                anyway = ("run", program, "--machine", f"virtual:{personality}?speed=max", "--despite-errors")
+                result = kerf(*anyway)
                 self.assert_complains(result, REFUSED, "bad.nc", "line 3", "M77X5", "error 20")
-                events = kerf("run", program, "--machine", f"virtual:{personality}?speed=max", "--json").stdout
+                events = kerf(*anyway, "--json").stdout
                 refusal = json.loads(events.splitlines()[-1])["refusal"]
                 self.assertEqual((refusal["file_line"], refusal["code"]), (3, 20))
                 self.assertTrue(refusal["meaning"])
+
+    def test_the_check_comes_first(self):
+        program = self.file("bad.nc", "G21 G90\nG0 X1\nM77 X5\nG0 X2\n")
+        for personality in PERSONALITIES:
+            with self.subTest(personality):
+                run = ("run", program, "--machine", f"virtual:{personality}?speed=max")
+                result = kerf(*run)
+                self.assert_complains(result, REFUSED, "bad.nc was not started", "line 3", "--despite-errors")
+                self.assertIn("line 3: M77 X5", result.stdout)
+                self.assertNotIn("Cutting", result.stdout)
+                events = [json.loads(line) for line in kerf(*run, "--json").stdout.splitlines()]
+                checked = [event["check"] for event in events if event["event"] == "checked"]
+                self.assertEqual([(f["line"], f["code"]) for f in checked[0]["findings"]], [(3, "error:20")])
+                self.assertEqual(events[-1]["exit_status"], REFUSED)
+
+    def test_warnings_do_not_stop_a_job(self):
+        program = self.file("fast.nc", "G21 G90\nM3 S500\nG0 Z1\nG1 X1 F90000\nM5\n")
+        result = kerf("run", program, "--machine", "virtual:grbl?speed=max")
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        self.assertIn("warning, line 4: The feed is higher than the machine goes.", result.stdout)
 
     def test_bar_on_a_terminal(self):
         with OnTerminal("run", example("facing.nc"), "--machine", "virtual:grblhal?speed=50") as terminal:

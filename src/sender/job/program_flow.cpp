@@ -15,6 +15,13 @@ bool is_word(const LineWord& word, char letter, int number) {
 
 }  // namespace
 
+ToolChanges tool_changes_on(const machine::ToolChangeFact& controller) {
+  using machine::ToolChangeKind;
+  const bool is_its_own_affair = controller.kind == ToolChangeKind::Manual ||
+                                 controller.kind == ToolChangeKind::Changer || !controller.mode.empty();
+  return is_its_own_affair ? ToolChanges::ByController : ToolChanges::ByOperator;
+}
+
 FlowWords flow_words_of(std::string_view text) {
   // Most lines are motion without any of these.
   if (text.find_first_of("MmTtPp") == std::string_view::npos) return {};

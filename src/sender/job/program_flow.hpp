@@ -10,6 +10,8 @@
 
 #include <boost/describe.hpp>
 
+#include "sender/machine/features.hpp"
+
 namespace kerf::job {
 
 /// What one line asks of whoever sends it.
@@ -40,6 +42,10 @@ enum class ToolChanges {
   ByOperator,    ///< the controller refuses or overlooks M6: Kerf holds the line back and the operator changes the tool
 };
 BOOST_DESCRIBE_ENUM(ToolChanges, ByController, ByOperator)
+
+/// A controller whose owner has set it to ignore M6 (a mode, `$341`) does as it is told; one that knows no other way
+/// does not change tools, whatever it answers.
+[[nodiscard]] ToolChanges tool_changes_on(const machine::ToolChangeFact& controller);
 
 /// A tool change at which the program waits.
 struct ToolGate {

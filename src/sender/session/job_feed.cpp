@@ -7,8 +7,6 @@
 namespace kerf::session {
 namespace {
 
-using machine::ToolChangeKind;
-
 job::WireForm form_for(const vocabulary::Dialect& dialect, bool texts_keep_marks, const JobOptions& options) {
   job::WireForm form = job::wire_form_of(dialect);
   form.keeps_marks = texts_keep_marks;
@@ -17,21 +15,13 @@ job::WireForm form_for(const vocabulary::Dialect& dialect, bool texts_keep_marks
   return form;
 }
 
-// A controller whose owner has set it to ignore M6 (a mode, `$341`) does as it is told; one that knows no other way
-// does not change tools, whatever it answers.
-job::ToolChanges changes_for(const machine::ToolChangeFact& tools) {
-  const bool is_its_own_affair =
-      tools.kind == ToolChangeKind::Manual || tools.kind == ToolChangeKind::Changer || !tools.mode.empty();
-  return is_its_own_affair ? job::ToolChanges::ByController : job::ToolChanges::ByOperator;
-}
-
 }  // namespace
 
 JobFeed::JobFeed(std::shared_ptr<const job::Program> program, const vocabulary::Dialect& dialect, bool texts_keep_marks,
                  const machine::ToolChangeFact& tools, const JobOptions& options)
     : program_(std::move(program)),
       form_(form_for(dialect, texts_keep_marks, options)),
-      flow_(std::make_shared<job::ProgramFlow>(changes_for(tools), !form_.keeps_messages)) {}
+      flow_(std::make_shared<job::ProgramFlow>(job::tool_changes_on(tools), !form_.keeps_messages)) {}
 
 std::unique_ptr<streaming::LineSource> JobFeed::lines_from(std::uint32_t first_line) const {
   return std::make_unique<ProgramLines>(program_, form_, flow_, first_line);
