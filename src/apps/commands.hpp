@@ -244,6 +244,7 @@ struct TransformOptions {
   std::vector<TransformStepText> steps;  ///< in the order of the command line
   std::string output;                    ///< empty or "-": standard output
   bool previews = false;
+  bool splits_tools = false;            ///< a file for each tool
   std::string personality = "grblhal";  ///< it knows the most words
 };
 [[nodiscard]] ExitStatus transform(const TransformOptions& options);

@@ -2,10 +2,12 @@
 
 #include "rehearsal/transform.hpp"
 
+#include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -21,11 +23,20 @@ namespace kerf::apps {
 namespace {
 
 using rehearsal::ProgramMeasure;
+using rehearsal::ProgramPart;
 using rehearsal::ProgramSize;
 using rehearsal::SourceLine;
 using rehearsal::Transform;
 using rehearsal::TransformRefusal;
 using rehearsal::TransformStep;
+
+/// What is done to which program.
+struct Work {
+  const job::Program& program;
+  const std::vector<TransformStep>& steps;
+  const vocabulary::Dialect& dialect;
+  const std::string& file;
+};
 
 /// What becomes of the lines; counted as they come.
 struct Changes {
@@ -38,16 +49,17 @@ class LineWriter {
  public:
   explicit LineWriter(io::FileReplacement* file) : file_(file) {}
 
-  /// False when the file cannot be written; complain() has said why.
+  /// False when the file cannot be written.
   bool put(const SourceLine& line) {
+    // What ends the line stays behind until it is known whether another one follows.
+    if (text_.size() >= kPiece && !flush()) return false;
     rehearsal::append_line(text_, line, has_lines_);
     has_lines_ = true;
-    return text_.size() < kPiece || flush();
+    return true;
   }
 
   bool flush() {
-    // The end of the line before tells whether a new one is needed.
-    const std::size_t kept = text_.empty() || is_line_end(text_.back()) ? 0 : std::min<std::size_t>(text_.size(), 1);
+    const std::size_t kept = std::min<std::size_t>(text_.size(), 1);
     const std::string_view out = std::string_view{text_}.substr(0, text_.size() - kept);
     const bool done = write(out);
     text_.erase(0, out.size());
@@ -62,17 +74,12 @@ class LineWriter {
 
  private:
   static constexpr std::size_t kPiece = 1U << 16U;
-  static bool is_line_end(char letter) { return letter == '\n' || letter == '\r'; }
 
   bool write(std::string_view text) {
-    if (file_ == nullptr) {
-      put_text(text);
-      return true;
-    }
-    return file_->write(text).has_value();
+    if (file_ != nullptr) return file_->write(text).has_value();
+    apps::put("{}", text);
+    return true;
   }
-
-  static void put_text(std::string_view text) { apps::put("{}", text); }
 
   io::FileReplacement* file_;
   std::string text_;
@@ -137,11 +144,10 @@ void tell_size(std::string_view name, const ProgramSize& size) {
       size.rapid_mm, range_text(size.cutting), range_text(size.all));
 }
 
-ExitStatus preview(const job::Program& program, const std::vector<TransformStep>& steps,
-                   const vocabulary::Dialect& dialect, const TransformOptions& options) {
-  Transform transform(program, steps, dialect);
-  ProgramMeasure measure(dialect);
-  ChangeCounter counter(program);
+ExitStatus preview(const Work& work) {
+  Transform transform(work.program, work.steps, work.dialect);
+  ProgramMeasure measure(work.dialect);
+  ChangeCounter counter(work.program);
   std::optional<TransformRefusal> lost;
   auto line = transform.next();
   for (; line && *line; line = transform.next()) {
@@ -150,10 +156,10 @@ ExitStatus preview(const job::Program& program, const std::vector<TransformStep>
     if (auto added = measure.add(**line); !added) lost = added.error();
   }
   if (!line) {
-    complain(refusal_text(line.error(), options.file));
+    complain(refusal_text(line.error(), work.file));
     return ExitStatus::Refused;
   }
-  if (const auto before = size_of(program, dialect)) tell_size("Before", *before);
+  if (const auto before = size_of(work.program, work.dialect)) tell_size("Before", *before);
   if (lost) {
     put("After: from line {} on it cannot be measured: {}\n", lost->line, lost->reason);
   } else {
@@ -167,12 +173,11 @@ ExitStatus preview(const job::Program& program, const std::vector<TransformStep>
   return ExitStatus::Done;
 }
 
-/// Every line through `writer`, or nowhere.
-ExitStatus carry_out(const job::Program& program, const std::vector<TransformStep>& steps,
-                     const vocabulary::Dialect& dialect, const TransformOptions& options, LineWriter* writer,
-                     Changes* changes) {
-  Transform transform(program, steps, dialect);
-  ChangeCounter counter(program);
+/// Every line through `writer`; null: everything is only tried.
+std::expected<Changes, ExitStatus> carry_out(const Work& work, const std::optional<ProgramPart>& part,
+                                             LineWriter* writer) {
+  Transform transform(work.program, work.steps, work.dialect, part);
+  ChangeCounter counter(work.program);
   auto line = transform.next();
   bool is_written = true;
   for (; line && *line && is_written; line = transform.next()) {
@@ -180,49 +185,103 @@ ExitStatus carry_out(const job::Program& program, const std::vector<TransformSte
     if (writer != nullptr) is_written = writer->put(**line);
   }
   if (!line) {
-    complain(refusal_text(line.error(), options.file));
-    return ExitStatus::Refused;
+    complain(refusal_text(line.error(), work.file));
+    return std::unexpected{ExitStatus::Refused};
   }
-  if (writer == nullptr) return ExitStatus::Done;
+  if (writer == nullptr) return counter.changes();
   if (!is_written || !writer->finish()) {
-    complain(fmt::format("'{}' cannot be written: is the disk full?", options.output));
-    return ExitStatus::Usage;
+    complain("The new program cannot be written: is the disk full?");
+    return std::unexpected{ExitStatus::Usage};
   }
-  warn(transform, options.file);
-  *changes = counter.changes();
-  return ExitStatus::Done;
+  warn(transform, work.file);
+  return counter.changes();
 }
 
-ExitStatus write_file(const job::Program& program, const std::vector<TransformStep>& steps,
-                      const vocabulary::Dialect& dialect, const TransformOptions& options) {
-  auto file = io::FileReplacement::begin(options.output);
+ExitStatus write_file(const Work& work, const std::optional<ProgramPart>& part, const std::string& output) {
+  auto file = io::FileReplacement::begin(output);
   if (!file) {
-    complain(io::explain(file.error(), options.output));
+    complain(io::explain(file.error(), output));
     return ExitStatus::Usage;
   }
   LineWriter writer(&*file);
-  Changes changes;
-  if (const auto status = carry_out(program, steps, dialect, options, &writer, &changes); status != ExitStatus::Done) {
-    return status;
-  }
+  const auto changes = carry_out(work, part, &writer);
+  if (!changes) return changes.error();
   if (const auto committed = file->commit(); !committed) {
-    complain(io::explain(committed.error(), options.output));
+    complain(io::explain(committed.error(), output));
     return ExitStatus::Usage;
   }
-  put("{}: {} lines, {} of them new or changed.\n", options.output, changes.lines, changes.lines - changes.unchanged);
+  put("{}: {} lines, {} of them new or changed.\n", output, changes->lines, changes->lines - changes->unchanged);
   return ExitStatus::Done;
+}
+
+ExitStatus write_to_standard_output(const Work& work) {
+  // Half a program must not get out: first everything is tried.
+  if (const auto tried = carry_out(work, std::nullopt, nullptr); !tried) return tried.error();
+  LineWriter writer(nullptr);
+  const auto changes = carry_out(work, std::nullopt, &writer);
+  return changes ? ExitStatus::Done : changes.error();
+}
+
+/// `part.nc` becomes `part-T1.nc`.
+std::string name_of_part(const std::string& output, int tool, std::size_t again) {
+  const std::string tag = again == 0 ? fmt::format("-T{}", tool) : fmt::format("-T{}-{}", tool, again + 1);
+  const std::size_t folder = output.find_last_of('/');
+  const std::size_t dot = output.find_last_of('.');
+  const bool has_ending = dot != std::string::npos && (folder == std::string::npos || dot > folder + 1) && dot > 0;
+  return has_ending ? output.substr(0, dot) + tag + output.substr(dot) : output + tag;
+}
+
+ExitStatus split_tools(const Work& work, const TransformOptions& options) {
+  const auto parts = rehearsal::tool_parts(work.program, work.dialect);
+  if (!parts) {
+    complain(refusal_text(parts.error(), work.file));
+    return ExitStatus::Refused;
+  }
+  // All of them or none.
+  for (const auto& part : *parts) {
+    if (const auto tried = carry_out(work, part.part, nullptr); !tried) return tried.error();
+  }
+  std::map<int, std::size_t> seen;
+  for (const auto& part : *parts) {
+    const std::string name = name_of_part(options.output, part.tool, seen[part.tool]++);
+    if (options.previews) {
+      const auto last = std::min(part.part.last_line, work.program.line_count());
+      put("{}: lines {} to {}\n", name, part.part.first_line, last);
+      continue;
+    }
+    if (const auto status = write_file(work, part.part, name); status != ExitStatus::Done) return status;
+  }
+  return ExitStatus::Done;
+}
+
+/// A sentence about options that do not go together.
+std::optional<std::string> conflict_of(const TransformOptions& options) {
+  if (options.steps.empty() && !options.splits_tools) {
+    return "Say what to do: 'kerf transform --help' lists the transforms.";
+  }
+  if (!options.splits_tools) return std::nullopt;
+  if (options.output.empty() || options.output == "-") {
+    return "--split-tools writes several files: name them with -o, such as -o part.nc for part-T1.nc and so on.";
+  }
+  for (const TransformStepText& step : options.steps) {
+    for (const std::string_view other : {"--passes", "--copies", "--from-line", "--outline"}) {
+      if (step.option == other)
+        return fmt::format("--split-tools and {} do not go together: use one after the other.", other);
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 ExitStatus transform(const TransformOptions& options) {
+  if (const auto conflict = conflict_of(options)) {
+    complain(*conflict);
+    return ExitStatus::Usage;
+  }
   const auto steps = parse_steps(options.steps);
   if (!steps) {
     complain(steps.error());
-    return ExitStatus::Usage;
-  }
-  if (steps->empty()) {
-    complain("Say what to do: 'kerf transform --help' lists the transforms.");
     return ExitStatus::Usage;
   }
   const auto personality = io::parse_personality(options.personality);
@@ -235,17 +294,12 @@ ExitStatus transform(const TransformOptions& options) {
     complain(io::explain(file.error(), options.file));
     return ExitStatus::Usage;
   }
-  const job::Program& program = *file->program();
-  const vocabulary::Dialect& dialect = (*personality)->dialect();
-  if (options.previews) return preview(program, *steps, dialect, options);
-  if (!options.output.empty() && options.output != "-") return write_file(program, *steps, dialect, options);
-  // Half a program must not get out: first everything is tried.
-  if (const auto status = carry_out(program, *steps, dialect, options, nullptr, nullptr); status != ExitStatus::Done) {
-    return status;
-  }
-  LineWriter writer(nullptr);
-  Changes changes;
-  return carry_out(program, *steps, dialect, options, &writer, &changes);
+  const Work work{
+      .program = *file->program(), .steps = *steps, .dialect = (*personality)->dialect(), .file = options.file};
+  if (options.splits_tools) return split_tools(work, options);
+  if (options.previews) return preview(work);
+  if (options.output.empty() || options.output == "-") return write_to_standard_output(work);
+  return write_file(work, std::nullopt, options.output);
 }
 
 }  // namespace kerf::apps

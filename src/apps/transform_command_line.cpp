@@ -30,9 +30,17 @@ constexpr StepOption kSteps[] = {
     {"--rotate", "DEG[@X,Y]", "Turn it counterclockwise about work zero, or about a place", kPlace},
     {"--mirror", "x|y|z[@MM]", "Left becomes right (x), at work zero or at a place", kPlace},
     {"--scale", "F|FX,FY[,FZ]", "Make it larger or smaller; feeds stay", kPlace},
+    {"--copies", "G54,G55,...", "The job once at each of these work zeros", kPlace},
+    {"--height-map", "GRID", "Follow a measured surface: a file with lines of x,y,z on a grid, in work coordinates",
+     kPlace},
+    {"--passes", "N[,MM]", "The job N times, each time so much deeper; rapids stay where they are", kWork},
+    {"--from-line", "N", "Only the rest from this line on, with modes, spindle and a safe way there in front", kWork},
+    {"--outline", "box|hull[,FEED]", "Only a way around the job, above it, with the spindle off", kWork},
     {"--feed", "PERCENT", "Scale all feeds", kWork},
     {"--speed", "PERCENT", "Scale all spindle speeds or laser powers", kWork},
     {"--units", "mm|inch", "Write it in the other unit", kForm},
+    {"--arcs-to-lines", "MM", "Chords within this tolerance in place of G2 and G3", kForm},
+    {"--lines-to-arcs", "MM", "Arcs within this tolerance in place of runs of short lines", kForm},
     {"--decimals", "N", "At most so many decimals, and no zeros at the end", kForm},
 };
 
@@ -67,6 +75,8 @@ void add_transform(CLI::App& kerf, Chosen& chosen) {
   }
   command->add_flag("--strip-comments")->description("Take comments away, and lines with nothing else")->group(kForm);
   command->add_option("-o,--output", options->output, "Write to this file; else to standard output")->type_name("OUT");
+  command->add_flag("--split-tools", options->splits_tools,
+                    "A file for each tool: OUT-T1.nc, OUT-T2.nc ... in place of OUT.nc; comes last");
   command->add_flag("--preview", options->previews, "Only say what would change; write nothing");
   command->add_option("-p,--personality", options->personality, "The firmware whose rules the file is read with")
       ->type_name("NAME")

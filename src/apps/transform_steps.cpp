@@ -1,12 +1,16 @@
 #include "apps/transform_steps.hpp"
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "common/base/text.hpp"
+#include "io/text_file.hpp"
+#include "sender/job/program_start.hpp"
 
 namespace kerf::apps {
 namespace {
@@ -96,6 +100,68 @@ Parsed parse_strip(std::string_view) {
   return rehearsal::StripComments{};
 }
 
+std::optional<double> tolerance(std::string_view text) {
+  return base::parse_decimal(base::trim(text));
+}
+
+Parsed parse_arcs_to_lines(std::string_view text) {
+  const auto value = tolerance(text);
+  return value ? Parsed{rehearsal::ArcsToLines{*value}} : std::nullopt;
+}
+
+Parsed parse_lines_to_arcs(std::string_view text) {
+  const auto value = tolerance(text);
+  return value ? Parsed{rehearsal::LinesToArcs{*value}} : std::nullopt;
+}
+
+Parsed parse_passes(std::string_view text) {
+  const auto parts = base::split_at_most(text, ',', 2);
+  const auto passes = base::parse_int<int>(base::trim(parts[0]));
+  const auto step = parts.size() < 2 ? std::optional{0.0} : base::parse_decimal(base::trim(parts[1]));
+  if (!passes || !step) return std::nullopt;
+  return rehearsal::RepeatDeeper{.passes = *passes, .step_mm = *step};
+}
+
+Parsed parse_copies(std::string_view text) {
+  rehearsal::CopyToZeros copies;
+  for (const std::string_view part : base::split(text, ',')) {
+    std::uint8_t zero = 0;
+    while (zero < gcode::kMaxWorkOffsets && !base::iequals(base::trim(part), job::work_offset_name(zero))) ++zero;
+    if (zero == gcode::kMaxWorkOffsets) return std::nullopt;
+    copies.work_offsets.push_back(zero);
+  }
+  return copies;
+}
+
+Parsed parse_from_line(std::string_view text) {
+  const auto line = base::parse_int<std::uint32_t>(text);
+  return line ? Parsed{rehearsal::RunFromLine{*line}} : std::nullopt;
+}
+
+Parsed parse_outline(std::string_view text) {
+  const auto parts = base::split_at_most(text, ',', 2);
+  rehearsal::Outline outline;
+  if (base::iequals(parts[0], "hull")) {
+    outline.shape = rehearsal::OutlineShape::Hull;
+  } else if (!base::iequals(parts[0], "box")) {
+    return std::nullopt;
+  }
+  if (parts.size() < 2) return outline;
+  const auto feed = base::parse_decimal(base::trim(parts[1]));
+  if (!feed) return std::nullopt;
+  outline.feed_mm_per_min = *feed;
+  return outline;
+}
+
+/// The only option whose value is the name of a file.
+std::expected<TransformStep, std::string> load_heights(const std::string& file) {
+  const auto text = io::read_text_file(file);
+  if (!text) return std::unexpected{io::explain(text.error(), file)};
+  auto map = rehearsal::HeightMap::parse(*text);
+  if (!map) return std::unexpected{fmt::format("{}: {}", file, map.error())};
+  return rehearsal::FollowHeights{std::make_shared<const rehearsal::HeightMap>(*std::move(map))};
+}
+
 struct StepRow {
   std::string_view option;
   Parsed (*parse)(std::string_view text);
@@ -111,24 +177,41 @@ constexpr std::array kSteps{
     StepRow{"--decimals", &parse_decimals, "a whole number, such as 3"},
     StepRow{"--strip-comments", &parse_strip, "nothing"},
     StepRow{"--feed", &parse_feed, "per cent of what the program says, such as 80"},
+    StepRow{"--arcs-to-lines", &parse_arcs_to_lines, "a tolerance in mm, such as 0.002"},
+    StepRow{"--lines-to-arcs", &parse_lines_to_arcs, "a tolerance in mm, such as 0.002"},
+    StepRow{"--passes", &parse_passes, "how many, and how much deeper each, such as 3,0.5"},
+    StepRow{"--copies", &parse_copies, "work zeros, such as G54,G55,G56"},
+    StepRow{"--from-line", &parse_from_line, "the number of a line, such as 1200"},
+    StepRow{"--outline", &parse_outline, "box or hull, and a feed if not 1000 mm/min: box or hull,3000"},
     StepRow{"--speed", &parse_speed, "per cent of what the program says, such as 80"},
 };
+
+}  // namespace
+
+namespace {
+
+std::expected<TransformStep, std::string> parse_step(const TransformStepText& text) {
+  if (text.option == "--height-map") return load_heights(text.value);
+  for (const StepRow& row : kSteps) {
+    if (row.option != text.option) continue;
+    const Parsed step = row.parse(text.value);
+    if (step) return *step;
+    return std::unexpected{fmt::format("'{} {}' is not understood: write {}.", row.option, text.value, row.form)};
+  }
+  return std::unexpected{fmt::format("There is no transform '{}'.", text.option)};
+}
 
 }  // namespace
 
 std::expected<std::vector<TransformStep>, std::string> parse_steps(const std::vector<TransformStepText>& texts) {
   std::vector<TransformStep> steps;
   for (const TransformStepText& text : texts) {
-    for (const StepRow& row : kSteps) {
-      if (row.option != text.option) continue;
-      const Parsed step = row.parse(text.value);
-      if (!step)
-        return std::unexpected{fmt::format("'{} {}' is not understood: write {}.", row.option, text.value, row.form)};
-      if (const auto fault = rehearsal::fault_of(*step)) {
-        return std::unexpected{fmt::format("'{} {}' cannot be: {}", row.option, text.value, *fault)};
-      }
-      steps.push_back(*step);
+    auto step = parse_step(text);
+    if (!step) return std::unexpected{std::move(step.error())};
+    if (const auto fault = rehearsal::fault_of(*step)) {
+      return std::unexpected{fmt::format("'{} {}' cannot be: {}", text.option, text.value, *fault)};
     }
+    steps.push_back(*std::move(step));
   }
   return steps;
 }

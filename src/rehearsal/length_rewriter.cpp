@@ -18,10 +18,6 @@ constexpr double kMmTolerance = 2e-5;
 constexpr double kFeedInchTolerance = 5e-5;
 constexpr double kFeedMmTolerance = 2e-3;
 
-constexpr bool turns(std::size_t axis) {
-  return axis >= 3 && axis <= 5;
-}
-
 /// Letters besides the axes that are lengths in such a line.
 std::string_view other_lengths(const LineFacts& facts) {
   switch (facts.use) {

@@ -111,9 +111,16 @@ void LineText::append(std::string_view text) {
 }
 
 void LineText::erase(const PlacedWord& word) {
+  const auto is_gap = [this](std::size_t at) { return line_[at] == ' ' || line_[at] == '\t'; };
+  std::size_t begin = word.begin;
   std::size_t end = word.end;
-  while (end < line_.size() && (line_[end] == ' ' || line_[end] == '\t')) ++end;
-  edits_.push_back({.begin = word.begin, .end = end, .text = {}});
+  while (begin > 0 && is_gap(begin - 1)) --begin;
+  // The first word gives up the blanks behind it.
+  if (begin == 0) {
+    begin = word.begin;
+    while (end < line_.size() && is_gap(end)) ++end;
+  }
+  edits_.push_back({.begin = begin, .end = end, .text = {}});
 }
 
 std::string LineText::text() const {

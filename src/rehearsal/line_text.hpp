@@ -36,6 +36,8 @@ class LineText {
   [[nodiscard]] bool has_command(char letter, double number) const { return find_command(letter, number) != nullptr; }
   /// The words and nothing else, without those M words.
   [[nodiscard]] std::string plain_words(std::span<const int> without_m = {}) const;
+  /// What stands between its words: a blank or nothing.
+  [[nodiscard]] std::string_view gap() const { return is_spaced_ ? " " : ""; }
   /// The line begins with `/`.
   [[nodiscard]] bool may_be_skipped() const;
 
@@ -46,7 +48,7 @@ class LineText {
   void insert_after(const PlacedWord& word, std::string_view text);
   /// Behind the last word, or where the first would stand.
   void append(std::string_view text);
-  /// With the blanks behind it.
+  /// With the blanks on one side of it.
   void erase(const PlacedWord& word);
 
   [[nodiscard]] bool is_edited() const { return !edits_.empty(); }

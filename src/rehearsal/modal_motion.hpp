@@ -1,7 +1,10 @@
 #pragma once
 // The motion word in force in a program that is written, so that a line says one where it must.
 
-#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "rehearsal/line_text.hpp"
 
@@ -11,14 +14,12 @@ class ModalMotion {
  public:
   /// `line` was written as it is.
   void note(const LineText& line);
-  void note(double word) { word_ = word; }
   /// The line is to be read with G `word`: an own word is changed, and one is added where another mode is in force.
   void say(LineText& line, int word);
-  [[nodiscard]] const std::optional<double>& word() const { return word_; }
 
  private:
-  /// Empty before the first.
-  std::optional<double> word_;
+  /// G0 is in force before the first.
+  double word_ = 0;
 };
 
 /// Puts `words` in the places of the words with `letters`: each in its own letter's place, others into what is free,

@@ -233,11 +233,7 @@ void ProgramReading::note_words(const LineText& line, LineFacts& facts) const {
     const PlacedWord* const word = line.find(kAxisLetters[axis]);
     if (word == nullptr) continue;
     facts.named |= mask_of_axis(axis);
-    // What turns is not measured in mm.
-    constexpr std::size_t kFirstTurning = 3;
-    constexpr std::size_t kLastTurning = 5;
-    const bool turns = axis >= kFirstTurning && axis <= kLastTurning;
-    facts.words_mm.at(axis) = word->value * (turns ? 1.0 : unit);
+    facts.words_mm.at(axis) = word->value * (turns(axis) ? 1.0 : unit);
   }
   facts.use = use_of(line, facts.modal, std::ranges::any_of(actions_, is_motion));
   if (facts.use == AxisUse::Nobody && facts.named != 0) facts.use = use_of_motion(facts.modal.motion);

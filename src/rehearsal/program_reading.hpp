@@ -45,6 +45,11 @@ inline constexpr std::size_t kZ = 2;
   return (mask >> axis & 1U) != 0;
 }
 
+/// A, B and C: not measured in mm.
+[[nodiscard]] constexpr bool turns(std::size_t axis) {
+  return axis >= 3 && axis <= 5;
+}
+
 /// Where the program is, in the coordinates that its words have at this line; only of known axes.
 struct ProgramPlace {
   ExactValues mm{};

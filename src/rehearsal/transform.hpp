@@ -16,7 +16,10 @@
 #include <boost/describe.hpp>
 
 #include "common/vocabulary/dialect.hpp"
+#include "rehearsal/height_map.hpp"
 #include "rehearsal/line_source.hpp"
+#include "rehearsal/outline_source.hpp"
+#include "rehearsal/part_source.hpp"
 #include "sender/job/program.hpp"
 
 namespace kerf::rehearsal {
@@ -80,8 +83,50 @@ struct ScaleSpeed {
 };
 BOOST_DESCRIBE_STRUCT(ScaleSpeed, (), (percent))
 
+/// Chords leave their arc by no more than the tolerance.
+struct ArcsToLines {
+  double tolerance_mm = 0.002;
+};
+BOOST_DESCRIBE_STRUCT(ArcsToLines, (), (tolerance_mm))
+
+/// Points and chords lie no farther than the tolerance from their arc.
+struct LinesToArcs {
+  double tolerance_mm = 0.002;
+};
+BOOST_DESCRIBE_STRUCT(LinesToArcs, (), (tolerance_mm))
+
+struct FollowHeights {
+  std::shared_ptr<const HeightMap> map;
+};
+
+/// So many passes in all, each deeper than the one before.
+struct RepeatDeeper {
+  int passes = 1;
+  double step_mm = 0;
+};
+BOOST_DESCRIBE_STRUCT(RepeatDeeper, (), (passes, step_mm))
+
+/// Once at each of these work zeros: 0 is G54.
+struct CopyToZeros {
+  std::vector<std::uint8_t> work_offsets;
+};
+BOOST_DESCRIBE_STRUCT(CopyToZeros, (), (work_offsets))
+
+/// The rest of the program from a line on, with what it needs in front.
+struct RunFromLine {
+  std::uint32_t line = 1;
+};
+BOOST_DESCRIBE_STRUCT(RunFromLine, (), (line))
+
+struct Outline {
+  OutlineShape shape{};
+  double feed_mm_per_min = 1000;
+};
+BOOST_DESCRIBE_STRUCT(Outline, (), (shape, feed_mm_per_min))
+
 using TransformStep =
-    std::variant<Translate, Rotate, Mirror, Scale, ConvertUnits, TrimDecimals, StripComments, ScaleFeed, ScaleSpeed>;
+    std::variant<Translate, Rotate, Mirror, Scale, ConvertUnits, TrimDecimals, StripComments, ScaleFeed, ScaleSpeed,
+                 ArcsToLines, LinesToArcs, FollowHeights, RepeatDeeper, CopyToZeros, RunFromLine, Outline>;
 
 /// Wrong numbers in the steps themselves: a sentence.
 [[nodiscard]] std::optional<std::string> fault_of(const TransformStep& step);
@@ -89,8 +134,10 @@ using TransformStep =
 /// The transformed program as it comes into being. Memory is that of a few lines.
 class Transform {
  public:
-  /// `program` must outlive it; every step passes fault_of(). Lines are read as `dialect` reads them.
-  Transform(const job::Program& program, const std::vector<TransformStep>& steps, const vocabulary::Dialect& dialect);
+  /// `program` must outlive it; every step passes fault_of(). Lines are read as `dialect` reads them. With `part` only
+  /// that part of what the steps make is given.
+  Transform(const job::Program& program, const std::vector<TransformStep>& steps, const vocabulary::Dialect& dialect,
+            const std::optional<ProgramPart>& part = std::nullopt);
 
   /// Nothing at the end; after a refusal nothing more.
   std::expected<std::optional<SourceLine>, TransformRefusal> next() { return source_->next(); }
@@ -100,6 +147,17 @@ class Transform {
  private:
   std::unique_ptr<LineSource> source_;
 };
+
+/// What is done with one tool.
+struct ToolPart {
+  /// 0 before any is told.
+  int tool = 0;
+  ProgramPart part{};
+};
+
+/// The program cut where tools change: at M6, or at T where it has no M6. Numbers of lines are those of `program`.
+[[nodiscard]] std::expected<std::vector<ToolPart>, TransformRefusal> tool_parts(const job::Program& program,
+                                                                                const vocabulary::Dialect& dialect);
 
 /// The whole text at once.
 [[nodiscard]] std::expected<std::string, TransformRefusal> transformed_text(const job::Program& program,
