@@ -15,6 +15,7 @@
 #include "common/vocabulary/codes.hpp"
 #include "rehearsal/check_rules.hpp"
 #include "rehearsal/sent_lines.hpp"
+#include "sender/job/line_words.hpp"
 #include "sender/machine/explanation_evidence.hpp"
 
 namespace kerf::rehearsal {
@@ -171,6 +172,7 @@ class Checker::Reading {
         line_reader_(reader_.rules().line),
         whereabouts_(machine_),
         rules_(machine_, machine_, machine_, machine_, machine_, machine_, machine_, machine_, machine_) {
+    is_doubtful_ = !machine_.knows_modes;
     StartupRule(machine_).begin(findings_);
   }
 
@@ -243,6 +245,10 @@ class Checker::Reading {
   void interpret(const CheckedLine& line, std::string_view text) {
     const AxisValues from = reader_.state().position_mm;
     actions_.clear();
+    if (computes(line)) {
+      static_cast<void>(reader_.interpret(text, actions_));
+      return lose_track(line);
+    }
     if (const auto read = reader_.interpret(text, actions_); !read) {
       refuse(line, text, read.error());
       return;
@@ -286,10 +292,25 @@ class Checker::Reading {
     }
   }
 
+  [[nodiscard]] bool computes(const CheckedLine& line) const {
+    if (!reader_.rules().reads_expressions) return false;
+    return line.words.has('O') || line.wire.find_first_of("#[") != std::string_view::npos;
+  }
+
+  void lose_track(const CheckedLine& line) {
+    findings_.add(FindingKind::Computed, line.number, line.text,
+                  [] { return "It uses parameters, expressions, subroutines or macros."; });
+    is_doubtful_ = true;
+    whereabouts_.lose();
+  }
+
   void refuse(const CheckedLine& line, std::string_view text, ErrorCode error) {
     const int code = vocabulary::number_of(error);
     const auto unknown = machine::unknown_commands(text, *machine_.dialect);
     const FindingKind kind = kind_of(error, !unknown.empty());
+    if (machine_.may_have_macros && job::needs_a_computer(line.wire, job::words_of(line.wire))) return lose_track(line);
+    // Where the modes are not known, only what no mode can help is sure.
+    if (is_doubtful_ && kind != FindingKind::UnknownWord) return;
     const auto* const row = vocabulary::find_code(machine_.dialect->errors, code);
     const auto what = [&]() -> std::string {
       if (kind == FindingKind::UnknownWord) {
@@ -362,6 +383,8 @@ class Checker::Reading {
   Findings findings_;
   CheckResult result_;
   std::vector<gcode::Action> actions_;
+  /// Of the modes: what they are, only the controller knows.
+  bool is_doubtful_ = false;
 };
 
 Severity CheckResult::worst() const {

@@ -46,6 +46,14 @@ AxisMask guarded_axes(const CheckMachine& machine) {
   return homed_only ? machine.homed_axes : all_axes(machine.motion.axes);
 }
 
+/// The build that was compiled with expressions, where the controller says so.
+const vocabulary::Dialect& dialect_for(const machine::Capabilities& known) {
+  const vocabulary::Dialect& usual = vocabulary::dialect_of(known.family);
+  if (!known.features.expressions.available.value_or(false)) return usual;
+  const auto* const build = vocabulary::find_dialect(std::string{usual.key} + "-expr");
+  return build != nullptr ? *build : usual;
+}
+
 /// Travel of one axis, as board and machine compute it.
 vocabulary::TravelFacts travel_facts(const firmware::SettingsStore& store, int axis) {
   const std::string switch_name =
@@ -115,7 +123,8 @@ CheckMachine check_machine_of(const simulation::CaseMachine& described, const Ch
 }
 
 CheckMachine check_machine_of(const machine::Capabilities& known, const machine::Snapshot& snapshot) {
-  CheckMachine machine{.dialect = &vocabulary::dialect_of(known.family)};
+  CheckMachine machine{.dialect = &dialect_for(known)};
+  machine.may_have_macros = known.lists_tokens;
   const auto number = [&](int id) { return machine::setting_number(known, id).value_or(0); };
   const gcode::InterpreterSettings settings = machine::interpreter_settings_of(known);
   machine.tool_changes = job::tool_changes_on(known.features.tool_change);
@@ -128,6 +137,7 @@ CheckMachine check_machine_of(const machine::Capabilities& known, const machine:
     machine.knows_offsets = true;
   } else {
     machine.reader = gcode::Interpreter(gcode::rules_for(*machine.dialect), settings);
+    machine.knows_modes = false;
   }
   const bool homes = machine::is_setting_on(known, setting::kHoming);
   machine.is_homed = snapshot.homing.all.value_or(homes);

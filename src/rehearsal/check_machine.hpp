@@ -26,6 +26,10 @@ struct CheckMachine {
   const vocabulary::Dialect* dialect = nullptr;
   /// Reads as the controller does, and stands where it stands: modes, offsets, tool length, position.
   gcode::Interpreter reader{gcode::rules_for(vocabulary::Firmware::Unknown)};
+  /// Its modes are those of the machine: what it refuses because of them is refused.
+  bool knows_modes = true;
+  /// It may have macros that nobody has told of.
+  bool may_have_macros = false;
   /// Axes whose position is that of the machine; the others are somewhere.
   AxisMask known_place = 0;
   /// The offsets are those of the machine, so work coordinates can be told in machine coordinates.

@@ -10,26 +10,9 @@
 #include "common/gcode/parser_state.hpp"
 #include "common/vocabulary/axis.hpp"
 #include "rehearsal/check_machine.hpp"
+#include "rehearsal/words_seen.hpp"
 
 namespace kerf::rehearsal {
-
-/// Which words stand in a line, for questions that the interpreter's actions do not answer.
-struct WordsSeen {
-  /// Bit n: the letter is there, A the first. G and M are looked at one by one.
-  std::uint32_t letters = 0;
-  bool machine_place = false;  ///< G28, G30, G53
-  bool sets_zero = false;      ///< G10, G92
-  bool inches = false;         ///< G20
-  bool millimetres = false;    ///< G21
-  bool has_lower_case = false;
-
-  [[nodiscard]] bool has(char letter) const { return ((letters >> static_cast<unsigned>(letter - 'A')) & 1U) != 0; }
-  /// Axes with a word of their own.
-  [[nodiscard]] AxisMask axes() const;
-};
-
-/// Of a line in wire form.
-[[nodiscard]] WordsSeen words_seen_in(std::string_view wire);
 
 /// A line that the controller takes.
 struct CheckedLine {
@@ -77,13 +60,6 @@ struct CheckedMove {
 constexpr std::size_t kZ = 2;
 /// Heights that differ by less are the same.
 constexpr float kSameHeightMm = 0.001F;
-
-[[nodiscard]] constexpr bool has_axis(AxisMask mask, std::size_t axis) {
-  return ((mask >> axis) & 1U) != 0;
-}
-[[nodiscard]] constexpr AxisMask axis_bit(std::size_t axis) {
-  return static_cast<AxisMask>(1U << axis);
-}
 
 /// "X 12.5", for people.
 [[nodiscard]] std::string place_on(std::size_t axis, float mm);

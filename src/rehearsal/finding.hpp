@@ -39,6 +39,7 @@ enum class FindingKind : std::uint8_t {
   StartupLine,
   Probing,
   ControllerCommand,
+  Computed,
   ToolUsed,
   ToolChange,
   Stop,
@@ -47,7 +48,7 @@ enum class FindingKind : std::uint8_t {
 BOOST_DESCRIBE_ENUM(FindingKind, Refused, UnknownWord, FeedMissing, LineTooLong, SoftLimit, BeyondTravel,
                     LargerThanMachine, RapidBelowCut, RapidIntoStock, UnhomedPosition, FeedTooHigh, SpeedOutOfRange,
                     SpeedMissing, SpindleOff, LaserModeOff, UnitsMixed, UnitsUnsaid, PlanesMixed, StartupLine, Probing,
-                    ControllerCommand, ToolUsed, ToolChange, Stop, BehindEnd)
+                    ControllerCommand, Computed, ToolUsed, ToolChange, Stop, BehindEnd)
 
 /// What is true of all findings of a kind.
 struct FindingRow {

@@ -7,6 +7,7 @@
 #include "common/base/text.hpp"
 #include "common/motion/rules.hpp"
 #include "firmware/settings_store.hpp"
+#include "rehearsal/words_seen.hpp"
 
 namespace kerf::rehearsal {
 namespace {
@@ -19,33 +20,6 @@ job::WireForm form_of(const vocabulary::Dialect& dialect) {
   job::WireForm form = job::wire_form_of(dialect);
   form.keeps_messages = false;
   return form;
-}
-
-/// What letters tell without reading numbers.
-struct Letters {
-  vocabulary::AxisMask axes = 0;
-  bool has_flow = false;
-  bool in_machine_coordinates = false;
-};
-
-Letters letters_of(std::string_view wire) {
-  Letters letters;
-  for (std::size_t at = 0; at < wire.size(); ++at) {
-    const char letter = base::to_upper(wire[at]);
-    if (letter == 'M' || letter == 'T') letters.has_flow = true;
-    if (const auto axis = vocabulary::axis_of(letter)) {
-      letters.axes = static_cast<vocabulary::AxisMask>(letters.axes | vocabulary::mask_of(*axis));
-    }
-    if (letter != 'G') continue;
-    std::string_view number = wire.substr(at + 1);
-    while (number.starts_with('0') && number.size() > 1) number.remove_prefix(1);
-    const auto is_place = [number](std::string_view word) {
-      if (!number.starts_with(word)) return false;
-      return number.size() == word.size() || (!base::is_digit(number[word.size()]) && number[word.size()] != '.');
-    };
-    if (is_place("53") || is_place("28") || is_place("30")) letters.in_machine_coordinates = true;
-  }
-  return letters;
 }
 
 vocabulary::AxisValues axis_values(const std::vector<double>& values) {
@@ -150,10 +124,11 @@ void ProgramWalk::prepare() {
   wire_.clear();
   job::append_wire_form(wire_, line_.text, form_);
   if (wire_.empty()) return;
-  const Letters letters = letters_of(wire_);
-  line_.axes = letters.axes;
-  line_.in_machine_coordinates = letters.in_machine_coordinates;
-  if (letters.has_flow && !wire_.starts_with('$')) {
+  const WordsSeen words_seen = words_seen_in(wire_);
+  line_.axes = words_seen.axes();
+  line_.in_machine_coordinates = words_seen.machine_place;
+  const bool has_flow = words_seen.has('M') || words_seen.has('T');
+  if (has_flow && !wire_.starts_with('$')) {
     const job::FlowWords words = job::flow_words_of(wire_);
     tool_.on_words(words);
     is_over_ = words.ends_program;
