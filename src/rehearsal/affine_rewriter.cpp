@@ -123,6 +123,9 @@ AffineRewriter::Done AffineRewriter::rewrite(LineText& text, const LineFacts& fa
 
 AffineRewriter::Done AffineRewriter::rewrite_move(LineText& text, const LineFacts& facts, std::uint32_t number,
                                                   LineQueue& out) {
+  const bool upside_down = map_.linear[kZ][kZ] < 0 && has_axis(facts.named, kZ);
+  if (upside_down && facts.use == AxisUse::Probe) return refuse(number, "the probe would go away from the work.");
+  if (upside_down) out.warn(number, "Along Z what was above the work is below it now: look at every rapid.");
   if (auto done = check_mapped_increments(facts, number, out); !done) return done;
   if (auto done = map_axes(text, facts, number); !done) return done;
   if (facts.use == AxisUse::Probe) {

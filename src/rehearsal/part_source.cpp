@@ -130,7 +130,9 @@ void PartSource::say_spindle(const SourceLine& like) {
 
 PartSource::Done PartSource::approach(const SourceLine& like) {
   const ProgramPlace& place = past_.reading.place();
-  if ((place.known & kSpace) != kSpace) {
+  // A laser's program may never speak of Z.
+  constexpr AxisMask kPlane = mask_of_axis(kX) | mask_of_axis(kY);
+  if ((place.known & (kPlane | (past_.told & kSpace))) != (kPlane | (past_.told & kSpace))) {
     return refuse(like.number,
                   "No line before has said where X, Y and Z are when it begins (G28, G53, a tool change or a "
                   "probe may have been in between). Begin at a line behind the next move that says it.");
@@ -140,9 +142,10 @@ PartSource::Done PartSource::approach(const SourceLine& like) {
   };
   const double height_mm = place.mm[kZ];
   const double safe_mm = std::max(past_.highest_mm.value_or(height_mm), height_mm);
-  queue_.put_new("G0 " + word(kZ, safe_mm), like);
+  const bool has_height = has_axis(past_.told, kZ);
+  if (has_height) queue_.put_new("G0 " + word(kZ, safe_mm), like);
   queue_.put_new("G0 " + word(kX, place.mm[kX]) + " " + word(kY, place.mm[kY]), like);
-  if (height_mm == safe_mm) return {};
+  if (!has_height || height_mm == safe_mm) return {};
   const auto plunge = past_.state.tool_history().plunge_mm_per_min;
   const auto& state = past_.reading.interpreter().state();
   const float feed = plunge.value_or(state.modal.feed_mode == gcode::FeedMode::UnitsPerMinute ? state.feed_rate : 0.0F);
@@ -168,10 +171,13 @@ PartSource::Done PartSource::begin(const SourceLine& first) {
   }
   say_modes(first);
   say_tool(first);
-  say_spindle(first);
+  // A laser must not burn on its way.
+  const bool is_laser = !has_axis(past_.told, kZ);
+  if (!is_laser) say_spindle(first);
   if (part_.approaches) {
     if (auto done = approach(first); !done) return done;
   }
+  if (is_laser) say_spindle(first);
   // And now the modes in which the part was written.
   const bool by_minute = state.modal.feed_mode == gcode::FeedMode::UnitsPerMinute;
   std::string words = mode_words(state.modal);

@@ -58,6 +58,8 @@ AxisUse use_of_motion(MotionMode motion) {
 }
 
 AxisUse use_of(const LineText& line, const gcode::ModalState& modal, bool moves) {
+  // Most lines are moves and say no G.
+  if (!line.has('G')) return moves ? use_of_motion(modal.motion) : AxisUse::Nobody;
   if (line.has_command('G', 10)) return use_of_g10(line, modal);
   if (line.has_command('G', 92)) return AxisUse::NamesPlace;
   if (line.has_command('G', 28) || line.has_command('G', 30)) return AxisUse::Home;
@@ -201,9 +203,10 @@ std::expected<LineFacts, TransformRefusal> ProgramReading::read(const LineText& 
                   "only. Have the CAM program write plain moves.");
   }
   // The end of the program resets the modes in which its line was read. Grbl has no M6: the sender waits there.
-  std::vector<int> apart{2, 30};
-  if (dialect_->tool_change == vocabulary::ToolChangeRule::Refused) apart.push_back(6);
-  if (auto read = execute(line.plain_words(apart), number); !read) return std::unexpected{std::move(read.error())};
+  constexpr std::array<int, 3> kApart{2, 30, 6};
+  const std::size_t apart = dialect_->tool_change == vocabulary::ToolChangeRule::Refused ? 3 : 2;
+  if (auto read = execute(line.plain_words(std::span{kApart}.first(apart)), number); !read)
+    return std::unexpected{std::move(read.error())};
   settle_actions();
   note_words(line, facts);
   facts.ends = line.has_command('M', 2) || line.has_command('M', 30);
@@ -245,11 +248,12 @@ void ProgramReading::note_words(const LineText& line, LineFacts& facts) const {
 
 void ProgramReading::note_renaming(const LineText& line, LineFacts& facts) const {
   if (facts.modal.work_offset != facts.before.work_offset) facts.renamed = kAllAxes;
+  const bool has_command = line.has('G');
   for (const double word : {92.1, 92.2, 92.3, 50.0}) {
-    if (line.has_command('G', word)) facts.renamed = kAllAxes;
+    if (has_command && line.has_command('G', word)) facts.renamed = kAllAxes;
   }
   for (const double word : {43.0, 43.1, 43.2, 49.0}) {
-    if (!line.has_command('G', word)) continue;
+    if (!has_command || !line.has_command('G', word)) continue;
     facts.renamed |= mask_of_axis(kZ);
     if (word == 43.1) facts.renamed |= facts.named;
   }

@@ -213,6 +213,11 @@ TEST(TransformPart, RefusesWhatItCannotKnow) {
   EXPECT_THAT(transformed("G38.2 Z-5 F50\nG0 X5\n", {RunFromLine{2}}), StartsWith("refused, line 1: This line probes"));
 }
 
+TEST(TransformPart, ALaserDoesNotBurnOnItsWay) {
+  EXPECT_EQ(transformed("G21 G90\nM4 S500\nG0 X1 Y2\nG1 X5 F600\nX9\n", {RunFromLine{5}}),
+            "G90 G21 G17 G94\nG0 X5 Y2\nM4 S500\nF600\nG1 X9\n");
+}
+
 /// By chance, but with a line in the middle: the machine ends where it does, and goes the same way to there.
 RC_GTEST_PROP(TransformPart, TheRestEndsWhereTheWholeDoes, ()) {
   for (const Firmware firmware : kFirmwares) {

@@ -45,6 +45,36 @@ class Transform(LiveTest):
                                   "--strip-comments", "--units", "inch", "--units", "mm", "--decimals", "4")
                     self.assertEqual(result.returncode, DONE, result.stderr)
 
+    def test_a_file_for_each_tool(self):
+        out = os.path.join(os.path.dirname(self.file("x.nc", PART)), "tools.nc")
+        result = kerf("transform", os.path.join(os.environ["KERF_EXAMPLES"], "coaster.nc"), "--split-tools", "-o", out)
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        for tool in ("-T1", "-T2"):
+            part = out.replace(".nc", tool + ".nc")
+            checked = kerf("estimate", part, "--personality", "grbl")
+            self.assertEqual(checked.returncode, DONE, checked.stdout + checked.stderr)
+
+    def test_follows_a_measured_surface(self):
+        part = self.file("part.nc", "G21 G90\nG0 X0 Y0 Z5\nG1 Z-1 F300\nX10\n")
+        grid = self.file("grid.csv", "x,y,z\n0,0,0\n10,0,1\n0,10,0\n10,10,1\n")
+        result = kerf("transform", part, "--height-map", grid)
+        self.assertEqual(result.stdout, "G21 G90\nG0 X0 Y0 Z5\nG1 Z-1 F300\nX10 Z0\n", result.stderr)
+        gap = self.file("gap.csv", "0,0,0\n10,0,1\n0,10,0\n")
+        result = kerf("transform", part, "--height-map", gap)
+        self.assertEqual(result.returncode, USAGE)
+        self.assertIn("X10.000 Y10.000 is missing", result.stderr)
+
+    def test_repeats_parts_and_outlines_are_programs(self):
+        facing = os.path.join(os.environ["KERF_EXAMPLES"], "facing.nc")
+        for words in (["--passes", "3,0.5"], ["--copies", "G54,G55"], ["--outline", "hull"], ["--from-line", "20"],
+                      ["--arcs-to-lines", "0.01"], ["--lines-to-arcs", "0.01"]):
+            with self.subTest(words):
+                out = os.path.join(os.path.dirname(self.file("x.nc", PART)), "out.nc")
+                result = kerf("transform", facing, *words, "-o", out)
+                self.assertEqual(result.returncode, DONE, result.stderr)
+                checked = kerf("estimate", out, "--personality", "grbl")
+                self.assertEqual(checked.returncode, DONE, checked.stdout + checked.stderr)
+
     def test_says_what_is_wrong(self):
         part = self.file("part.nc", PART)
         for words in (["--rotate", "x"], ["--scale", "0"], ["--decimals", "9"], []):
