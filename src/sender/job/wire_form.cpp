@@ -11,7 +11,7 @@
 namespace kerf::job {
 namespace {
 
-bool is_plain(char letter) {
+constexpr bool is_plain(char letter) {
   const bool printable = letter >= ' ' && letter <= '~';
   return printable && letter != '?' && letter != '!' && letter != '~';
 }
@@ -42,16 +42,34 @@ std::size_t append_comment(std::string& out, std::string_view line, std::size_t 
   return close + 1;
 }
 
+/// What a character adds to the words of a line: itself or nothing.
+constexpr auto kAdds = [] {
+  std::array<bool, 256> adds{};
+  for (std::size_t byte = 0; byte < adds.size(); ++byte) {
+    const char letter = static_cast<char>(byte);
+    adds.at(byte) = letter != ' ' && is_plain(letter);
+  }
+  return adds;
+}();
+
+/// The words up to the next comment, without a branch for what is left out; gives where they end.
+std::size_t append_until_comment(std::string& out, std::string_view line, std::size_t at) {
+  const std::size_t before = out.size();
+  out.resize(before + line.size() - at);
+  char* to = out.data() + before;
+  for (; at < line.size() && line[at] != ';' && line[at] != '('; ++at) {
+    *to = line[at];
+    to += kAdds[static_cast<unsigned char>(line[at])] ? 1 : 0;
+  }
+  out.resize(static_cast<std::size_t>(to - out.data()));
+  return at;
+}
+
 void append_words(std::string& out, std::string_view line, WireForm form) {
   for (std::size_t at = 0; at < line.size();) {
-    const char letter = line[at];
-    if (letter == ';') return;
-    if (letter == '(') {
-      at = append_comment(out, line, at, form);
-      continue;
-    }
-    if (letter != ' ' && is_plain(letter)) out += letter;
-    ++at;
+    at = append_until_comment(out, line, at);
+    if (at == line.size() || line[at] == ';') return;
+    at = append_comment(out, line, at, form);
   }
 }
 
