@@ -95,8 +95,8 @@ const WalkedLine* ProgramWalk::next() {
 
 bool ProgramWalk::take_text() {
   if (offset_ >= text_.size()) return false;
-  const std::size_t found = text_.find_first_of("\r\n", offset_);
-  const std::size_t end = std::min(found, text_.size());
+  std::size_t end = offset_;
+  while (end < text_.size() && text_[end] != '\n' && text_[end] != '\r') ++end;
   line_ = {.number = line_.number + 1, .text = text_.substr(offset_, end - offset_)};
   const bool is_pair = end + 1 < text_.size() && text_[end] == '\r' && text_[end + 1] == '\n';
   offset_ = std::min(end + (is_pair ? 2 : 1), text_.size());
@@ -141,6 +141,9 @@ void ProgramWalk::prepare() {
 }
 
 std::string_view ProgramWalk::as_read(std::string_view wire) {
+  // The wire form has neither blanks nor comments, so only a reader that strips more than these changes it.
+  const gcode::LineRules& rules = reader_.rules().line;
+  if (rules.filter != gcode::LineRules::Filter::StripWhileReading && wire.size() <= rules.length_max) return wire;
   lines_.clear();
   std::optional<gcode::ReadLine> read;
   for (std::size_t at = 0; at < wire.size() && !read; ++at) read = lines_.push(wire[at]);
