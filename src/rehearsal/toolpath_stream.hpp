@@ -14,8 +14,8 @@ namespace kerf::rehearsal {
 
 class ToolpathStream {
  public:
-  /// Levels for a part of some hundred millimetres on a screen.
-  static constexpr std::array<float, 4> kUsualTolerances_mm{0.01F, 0.05F, 0.25F, 1.0F};
+  /// Levels for a part of some hundred millimetres on a screen of some thousand pixels, and for overviews of it.
+  static constexpr std::array<float, 3> kUsualTolerances_mm{0.1F, 0.4F, 1.6F};
 
   /// `text` must outlive it. `hash` is the program's, or empty while nobody has counted it.
   ToolpathStream(std::string_view text, PathStart start, std::string hash,
