@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "common/base/text.hpp"
@@ -124,13 +126,14 @@ void LineText::erase(const PlacedWord& word) {
 }
 
 std::string LineText::text() const {
-  std::vector<Edit> edits = edits_;
-  std::stable_sort(edits.begin(), edits.end(), [](const Edit& one, const Edit& other) {
-    return std::pair{one.begin, one.end} < std::pair{other.begin, other.end};
-  });
+  // Of two in one place the earlier comes first.
+  std::vector<std::size_t> order(edits_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [this](std::size_t at) { return std::tuple{edits_[at].begin, edits_[at].end, at}; });
   std::string result;
   std::size_t at = 0;
-  for (const Edit& edit : edits) {
+  for (const std::size_t index : order) {
+    const Edit& edit = edits_[index];
     if (edit.begin > at) result.append(line_, at, edit.begin - at);
     result += edit.text;
     at = std::max(at, edit.end);
