@@ -34,6 +34,8 @@ constexpr Duration kPatience = 120s;
 constexpr Duration kAfterwards = 20s;
 /// Nothing goes on for so long: the operator stops the job.
 constexpr Duration kStuck = 25s;
+/// He believes that it helps so many times, while no line is answered.
+constexpr int kMostResumesInVain = 20;
 /// After a reset that wakes it, a machine speaks sooner.
 constexpr Duration kPatienceWithSilence = 10s;
 /// A report takes so long on a slow wire, behind what the controller says besides.
@@ -365,6 +367,11 @@ class CampaignRun {
       world_.submit(session::StopJob{});
       return;
     }
+    if (++resumes_in_vain_ > kMostResumesInVain) {
+      note("the operator gives up on a machine that does not obey");
+      world_.submit(session::AbortJob{});
+      return;
+    }
     note("the operator resumes");
     world_.submit(session::ResumeJob{});
   }
@@ -374,6 +381,7 @@ class CampaignRun {
     const bool goes_on =
         job.progress.lines_acknowledged != lines_acknowledged_ || job.phase != last_phase_ || watch_.is_moving();
     if (goes_on) moved_on_at_ = world_.now();
+    if (job.progress.lines_acknowledged != lines_acknowledged_) resumes_in_vain_ = 0;
     lines_acknowledged_ = job.progress.lines_acknowledged;
     last_phase_ = job.phase;
   }
@@ -471,6 +479,7 @@ class CampaignRun {
   Instant job_began_{};
   Instant moved_on_at_{};
   std::uint32_t lines_acknowledged_ = 0;
+  int resumes_in_vain_ = 0;
   JobPhase last_phase_{};
   bool is_killed_ = false;
   bool watches_path_ = false;

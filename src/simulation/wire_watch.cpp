@@ -155,11 +155,10 @@ void WireWatch::forget_oldest() {
 }
 
 // Lines are read in order, so what was sent before the question lies in no buffer any more, whatever became of it or of
-// its answer.
+// its answer. One that was asked again stands for the last: it is repeated only when the first one got no answer.
 void WireWatch::strike_out_what_was_read(std::string_view before_question) {
-  const auto is_question = [before_question](const LineInFlight& line) { return line.text == before_question; };
-  if (std::ranges::none_of(in_flight_, is_question)) return;
-  while (!is_question(in_flight_.front())) forget_oldest();
+  const auto last = std::ranges::find(in_flight_.rbegin(), in_flight_.rend(), before_question, &LineInFlight::text);
+  for (auto read = in_flight_.rend() - last; read > 1; --read) forget_oldest();
 }
 
 void WireWatch::complain(Instant now, std::string_view what) {

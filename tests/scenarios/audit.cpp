@@ -23,7 +23,6 @@ using job::AxisVerdict;
 using vocabulary::Firmware;
 using vocabulary::MachineState;
 
-constexpr std::array<const char*, 3> kLetters{"X", "Y", "Z"};
 
 /// Where the switches are and what guards them.
 struct Machine {
