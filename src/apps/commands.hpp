@@ -27,7 +27,6 @@ struct ResumeChoices {
   bool position_is_right = false;
   bool dry_run = false;
   bool yes = false;
-  bool trial = false;
 };
 
 /// How lines are fed, and what a refused one means.

@@ -81,8 +81,6 @@ void add_choices(CLI::App& command, ResumeChoices& choices, CLI::Option* needs) 
       ->group(kWay);
   command.add_flag("-n,--dry-run", choices.dry_run, "Only plan, rehearse and show; nothing moves")->group(kWay);
   command.add_flag("-y,--yes", choices.yes, "Ask nothing: home, and go on")->group(kWay);
-  command.add_flag("--trial", choices.trial, "Let a plan move a real machine although such plans are still on trial")
-      ->group(kWay);
   if (needs == nullptr) return;
   for (CLI::Option* option : command.get_options([](const CLI::Option* one) { return one->get_group() == kWay; }))
     option->needs(needs);

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <memory>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -119,7 +118,6 @@ Found<job::MachineAtStart> start_of(const io::JournalDatabase& journal, const jo
 /// What is the same for both commands.
 struct Circumstances {
   const std::string& machine;
-  const ResumeChoices& choices;
   const JobChoices& how;
   const io::RecordingOptions& recording;
   JobView& view;
@@ -132,16 +130,8 @@ struct Circumstances {
 };
 
 ExitStatus carry_out(ResumeWish wish, const Circumstances& with) {
-  const ResumeChoices& choices = with.choices;
   const auto url = io::parse_machine_url(with.machine);
   if (!url) return with.refuse(io::explain(url.error()));
-  // The fault campaign still finds plans that cut what they should not (`make campaign`).
-  if (!std::holds_alternative<io::VirtualAddress>(*url) && !choices.dry_run && !choices.trial) {
-    return with.refuse(
-        "Beginning in the middle of a program is on trial: in tests with faults one plan in fifty cut where it should "
-        "not. Nothing was sent. --dry-run shows the plan; with --trial it moves the machine: then keep a hand on the "
-        "emergency stop, above the work first.");
-  }
   const bool can_ask = !with.json && is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO);
   io::EventLoop loop;
   JobRunner runner(loop, *url, prepare_resume(std::move(wish)), with.how.settled(can_ask), with.view, can_ask);
@@ -196,7 +186,7 @@ ExitStatus resume_job(const ResumeOptions& options) {
                   .choice = choice_of(options.choices),
                   .dry_run = options.choices.dry_run,
                   .says_yes = options.choices.yes};
-  return carry_out(std::move(wish), {machine, options.choices, options.how, options.recording, *view, options.json});
+  return carry_out(std::move(wish), {machine, options.how, options.recording, *view, options.json});
 }
 
 ExitStatus run_from_line(const RunOptions& options) {
@@ -211,8 +201,7 @@ ExitStatus run_from_line(const RunOptions& options) {
                   .choice = choice_of(options.start),
                   .dry_run = options.start.dry_run,
                   .says_yes = options.start.yes};
-  return carry_out(std::move(wish),
-                   {options.machine, options.start, options.job, options.recording, *view, options.json});
+  return carry_out(std::move(wish), {options.machine, options.job, options.recording, *view, options.json});
 }
 
 }  // namespace kerf::apps

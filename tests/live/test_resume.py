@@ -16,7 +16,7 @@ from kerf_program import DONE, INTERRUPTED, PERSONALITIES, USAGE, LiveTest, OnTe
 SETTINGS = ("$22=1", "$24=3000", "$25=10000", "$26=10", "$27=1", "$110=10000", "$111=10000", "$112=10000", "$120=2000",
             "$121=2000", "$122=2000", "$130=60", "$131=60", "$132=60")
 # The operator knows that this spindle is quick.
-GO = ("--yes", "--trial", "--spin-up", "0.1")
+GO = ("--yes", "--spin-up", "0.1")
 
 
 def milling(rows=20):
@@ -102,12 +102,12 @@ class Resumes(LiveTest):
         with self.machine("grblhal") as machine:
             self.prepare(machine, "grblhal")
             self.cut_off(("run", program, "--machine", machine.url), 15)
-            with OnTerminal("resume", "--trial", "--spin-up", "0.1") as terminal:
+            with OnTerminal("resume", "--spin-up", "0.1") as terminal:
                 terminal.wait_for(r"Home now\? \[y/N\]")
                 terminal.press("n")
                 self.assertEqual(terminal.wait(), INTERRUPTED)
                 self.assertIn("no line was sent", terminal.output)
-            with OnTerminal("resume", "--trial", "--spin-up", "0.1") as terminal:
+            with OnTerminal("resume", "--spin-up", "0.1") as terminal:
                 terminal.wait_for(r"Home now\? \[y/N\]")
                 terminal.press("y")
                 terminal.wait_for(r"Go on\? \[y/N\]")
@@ -123,11 +123,9 @@ class Resumes(LiveTest):
         with self.machine("grbl") as machine:
             self.prepare(machine, "grbl")
             self.cut_off(("run", program, "--machine", machine.url), 15)
-            number = str(self.listed()[0]["number"])
             self.assert_complains(kerf("resume", "99"), USAGE, "no job 99", "--list")
             self.assert_complains(kerf("resume", "--from-line", "9999"), USAGE, "no line 9999", "part.nc")
-            self.assert_complains(kerf("resume", number, "--yes"), USAGE, "on trial")
-            result = kerf("resume", "--trial", "--machine", machine.url)
+            result = kerf("resume", "--machine", machine.url)
             self.assert_complains(result, USAGE, "terminal", "--yes")
             with self.machine("grblhal") as other:
                 result = kerf("resume", "--dry-run", "--machine", other.url)

@@ -23,7 +23,6 @@ using job::AxisVerdict;
 using vocabulary::Firmware;
 using vocabulary::MachineState;
 
-
 /// Where the switches are and what guards them.
 struct Machine {
   const char* name = "";
