@@ -79,7 +79,10 @@ IMPURE_HEADERS = {
     "coroutine", "locale", "clocale", "regex", "stacktrace", "syncstream", "execution", "print",
 }
 # Foreign headers that one file of the core includes, without linking anything.
-FOREIGN_IN_CORE = {"xxhash.h": "src/common/base/content_hash.cpp"}
+FOREIGN_IN_CORE = {
+    "xxhash.h": "src/common/base/content_hash.cpp",
+    "emmintrin.h": "src/common/base/text_masks.hpp",
+}
 TEST_LIBRARIES = ("gtest/", "gmock/", "rapidcheck", "rapidcheck/")
 
 # What the core may not call or write; `::now(` in io/ is where real time enters.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <utility>
 
@@ -22,28 +23,6 @@ constexpr bool is_control(char letter) {
 
 constexpr bool acts_at_once(char letter) {
   return letter == '?' || letter == '!' || letter == '~' || static_cast<unsigned char>(letter) > 0x7F;
-}
-
-/// What a letter may mean for its line.
-enum LetterTrait : std::uint8_t {
-  kSuspicious = 1,  ///< a control character, or one that acts at once, unless it is in a comment
-  kComment = 2,     ///< a comment begins
-};
-
-constexpr auto kTraits = [] {
-  std::array<std::uint8_t, 256> traits{};
-  for (std::size_t byte = 0; byte < traits.size(); ++byte) {
-    const char letter = static_cast<char>(byte);
-    if (is_control(letter) || acts_at_once(letter)) traits[byte] = kSuspicious;
-  }
-  traits['('] = traits[';'] = kComment;
-  return traits;
-}();
-
-std::uint8_t traits_of(std::string_view line) {
-  std::uint8_t traits = 0;
-  for (const char letter : line) traits |= kTraits[static_cast<unsigned char>(letter)];
-  return traits;
 }
 
 /// The end of the line that starts at `start`. Looks for one kind of line end at a time, which is fast, in stretches,
@@ -114,15 +93,14 @@ std::optional<ProgramLine> Program::line(std::uint32_t number) const {
   return found;
 }
 
-void Program::add_to_index(const ProgramLine& line) {
-  if ((line.number - 1) % index_step_ != 0) return;
+void Program::add_to_index(std::uint32_t number, std::size_t offset_bytes) {
   if (index_.size() == kMostIndexEntries) {
     for (std::size_t kept = 0; kept < kMostIndexEntries / 2; ++kept) index_[kept] = index_[2 * kept];
     index_.resize(kMostIndexEntries / 2);
     index_step_ *= 2;
-    if ((line.number - 1) % index_step_ != 0) return;
   }
-  index_.push_back(line.offset_bytes);
+  if ((number - 1) % index_step_ == 0) index_.push_back(offset_bytes);
+  next_indexed_ = number + index_step_ - (number - 1) % index_step_;
 }
 
 ProgramReader::ProgramReader(std::string name, std::shared_ptr<const void> owner, std::string_view text)
@@ -136,22 +114,62 @@ ProgramReader::ProgramReader(std::string name, std::shared_ptr<const void> owner
 
 bool ProgramReader::read_on(std::size_t most_bytes) {
   if (fault_) return false;
-  const std::size_t length = std::min(most_bytes, program_->text_.size() - offset_bytes_);
-  if (program_->text_.substr(offset_bytes_, length).contains('\0')) {
-    fault_ = ProgramFault{.error = ProgramError::Binary};
-    return false;
+  const std::string_view text = program_->text_;
+  const std::string_view piece = text.substr(read_bytes_, most_bytes);
+  const std::size_t until = read_bytes_ + piece.size();
+  while (read_bytes_ + base::kMaskedBytes <= until && !fault_) {
+    read_masked(base::text_masks(text.data() + read_bytes_), base::kMaskedBytes);
   }
-  const std::size_t until = offset_bytes_ + length;
-  while (offset_bytes_ < until) {
-    const auto line = program_->line_at(offset_bytes_, program_->line_count_ + 1);
-    program_->add_to_index(*line);
-    fault_ = read_line(*line);
-    if (fault_) return false;
-    program_->line_count_ = line->number;
-    offset_bytes_ = program_->offset_after(*line);
+  if (read_bytes_ < until && !fault_) {
+    std::array<char, base::kMaskedBytes> rest{};
+    rest.fill(' ');
+    std::ranges::copy(text.substr(read_bytes_, until - read_bytes_), rest.begin());
+    read_masked(base::text_masks(rest.data()), until - read_bytes_);
   }
-  hash_until(static_cast<std::size_t>(program_->text_.data() - whole_.data()) + offset_bytes_);
-  return offset_bytes_ < program_->text_.size();
+  const bool is_last = until == text.size();
+  if (is_last && line_start_bytes_ < until && !fault_) end_line(until, line_is_special_);
+  if (fault_ && piece.contains('\0')) fault_ = ProgramFault{.error = ProgramError::Binary};
+  if (fault_) return false;
+  hash_until(static_cast<std::size_t>(program_->text_.data() - whole_.data()) + until);
+  return !is_last;
+}
+
+// A CR ends a line, and so does a line feed that does not stand behind one.
+void ProgramReader::read_masked(const base::TextMasks& masks, std::size_t length) {
+  const std::uint64_t behind_return = masks.carriage_returns << 1U | (after_return_ ? 1U : 0U);
+  const std::uint64_t of_pairs = masks.line_feeds & behind_return;
+  std::uint64_t special = masks.special;
+  for (std::uint64_t ends = masks.line_feeds | masks.carriage_returns; ends != 0; ends &= ends - 1) {
+    const std::uint64_t end = ends & -ends;
+    const std::size_t at = read_bytes_ + static_cast<std::size_t>(std::countr_zero(end));
+    if ((end & of_pairs) == 0) {
+      end_line(at, line_is_special_ || (special & (end - 1)) != 0);
+      special &= ~(end - 1);
+      line_is_special_ = false;
+    }
+    line_start_bytes_ = at + 1;
+  }
+  line_is_special_ = line_is_special_ || special != 0;
+  after_return_ = (masks.carriage_returns >> (length - 1) & 1U) != 0;
+  read_bytes_ += length;
+}
+
+void ProgramReader::end_line(std::size_t end, bool is_special) {
+  if (fault_) return;
+  Program& program = *program_;
+  const std::uint32_t number = ++program.line_count_;
+  if (number == program.next_indexed_) program.add_to_index(number, line_start_bytes_);
+  const std::size_t length = end - line_start_bytes_;
+  // Most lines are plain and not the longest: look closer only where one asks for it.
+  if (!is_special && length <= program.longest_bare_.length) return;
+  const ProgramLine line{
+      .number = number, .offset_bytes = line_start_bytes_, .text = program.text_.substr(line_start_bytes_, length)};
+  if (is_special) fault_ = look_at(line);
+  if (fault_) return;
+  // The wire form is never longer than the line without its blanks. Without comments its two kinds are alike.
+  const auto blanks = static_cast<std::size_t>(std::ranges::count(line.text, ' '));
+  const bool may_be_longest = length - blanks > program.longest_bare_.length;
+  if (is_special || may_be_longest || !is_executable_) measure(line);
 }
 
 void ProgramReader::hash_until(std::size_t bytes_of_whole) {
@@ -167,21 +185,17 @@ std::expected<std::shared_ptr<const Program>, ProgramFault> ProgramReader::finis
   return std::move(program_);
 }
 
-std::optional<ProgramFault> ProgramReader::read_line(const ProgramLine& line) {
+std::optional<ProgramFault> ProgramReader::look_at(const ProgramLine& line) const {
   const auto fault = [&line](ProgramError error) {
     return ProgramFault{
         .error = error, .line = line.number, .excerpt = base::escape(line.text.substr(0, kExcerptLength))};
   };
-  // Most lines are plain ASCII without comments: look closer only where a byte asks for it.
-  const std::uint8_t traits = traits_of(line.text);
-  if ((traits & kSuspicious) != 0) {
-    const std::string words = outside_comments(line.text);
-    if (std::ranges::any_of(words, is_control)) return fault(ProgramError::Binary);
-    if (std::ranges::any_of(words, acts_at_once)) return fault(ProgramError::RealtimeByte);
-  }
-  // The wire form is never longer than the line. Without comments its two kinds are alike.
-  const bool may_be_longest = line.text.size() > program_->longest_bare_.length;
-  if (may_be_longest || !is_executable_ || (traits & kComment) != 0) measure(line);
+  const auto is_fine = [](char letter) { return !is_control(letter) && !acts_at_once(letter); };
+  if (std::ranges::all_of(line.text, is_fine)) return std::nullopt;
+  if (line.text.contains('\0')) return ProgramFault{.error = ProgramError::Binary};
+  const std::string words = outside_comments(line.text);
+  if (std::ranges::any_of(words, is_control)) return fault(ProgramError::Binary);
+  if (std::ranges::any_of(words, acts_at_once)) return fault(ProgramError::RealtimeByte);
   return std::nullopt;
 }
 

@@ -13,6 +13,7 @@
 #include <boost/describe.hpp>
 
 #include "common/base/content_hash.hpp"
+#include "common/base/text_masks.hpp"
 
 namespace kerf::job {
 
@@ -86,7 +87,7 @@ class Program {
  private:
   friend class ProgramReader;
   Program() = default;
-  void add_to_index(const ProgramLine& line);
+  void add_to_index(std::uint32_t number, std::size_t offset_bytes);
 
   std::string name_;
   std::shared_ptr<const void> owner_;
@@ -96,6 +97,8 @@ class Program {
   /// Offset of every index_step_-th line.
   std::vector<std::size_t> index_;
   std::uint32_t index_step_ = kFirstIndexStep;
+  /// Number of the line that the index has to hold next.
+  std::uint32_t next_indexed_ = 1;
   LongestLine longest_;
   LongestLine longest_bare_;
 };
@@ -107,13 +110,15 @@ class ProgramReader {
   /// `owner` keeps `text` alive.
   ProgramReader(std::string name, std::shared_ptr<const void> owner, std::string_view text);
 
-  /// Reads lines until `most_bytes` more have been read; false when nothing is left to read, or a fault was found.
+  /// Reads `most_bytes` more; false when nothing is left to read, or a fault was found.
   bool read_on(std::size_t most_bytes);
   /// The whole program, once read_on() gave false.
   [[nodiscard]] std::expected<std::shared_ptr<const Program>, ProgramFault> finish();
 
  private:
-  [[nodiscard]] std::optional<ProgramFault> read_line(const ProgramLine& line);
+  void read_masked(const base::TextMasks& masks, std::size_t length);
+  void end_line(std::size_t end, bool is_special);
+  [[nodiscard]] std::optional<ProgramFault> look_at(const ProgramLine& line) const;
   void measure(const ProgramLine& line);
   void hash_until(std::size_t bytes_of_whole);
 
@@ -122,7 +127,12 @@ class ProgramReader {
   std::string_view whole_;
   std::size_t hashed_bytes_ = 0;
   base::ContentHash hash_;
-  std::size_t offset_bytes_ = 0;
+  /// How far the text is read, and where the line begins that is being read.
+  std::size_t read_bytes_ = 0;
+  std::size_t line_start_bytes_ = 0;
+  bool line_is_special_ = false;
+  /// The last byte was a CR: a line feed behind it belongs to the same end.
+  bool after_return_ = false;
   bool is_executable_ = false;
   std::optional<ProgramFault> fault_;
   std::string form_;
