@@ -24,6 +24,56 @@ void interpret_lines(const BenchProgram& program, gcode::Interpreter& interprete
   }
 }
 
+/// Calls `visit(line)` for every line and chord for the planner.
+template <typename Visit>
+void walk_path(const BenchProgram& program, const simulation::CaseMachine& machine, Visit visit) {
+  const motion::MotionRules& rules = motion::rules_of(machine.personality.firmware);
+  const firmware::SettingsStore settings{machine.personality, firmware::axes_of(machine.personality, machine.stored)};
+  gcode::Interpreter interpreter(gcode::rules_for(machine.personality.firmware));
+  vocabulary::AxisValues at{};
+  interpret_lines(program, interpreter, [&](const std::vector<gcode::Action>& actions) {
+    for (const gcode::Action& action : actions) {
+      std::visit(
+          base::Overloaded{
+              [&](const gcode::LinearMove& move) { visit({.target_mm = at = move.target_mm, .feed = move.feed}); },
+              [&](const gcode::ArcMove& move) {
+                motion::ArcChords chords(motion::arc_of(move, at), rules, settings.motion());
+                while (const auto chord = chords.next()) visit({.target_mm = *chord, .feed = move.feed});
+                at = move.target_mm;
+              },
+              [](const auto&) {},
+          },
+          action);
+    }
+  });
+}
+
+/// A queue that is always full: one block out, one in.
+class FullPlanner {
+ public:
+  explicit FullPlanner(const simulation::CaseMachine& machine)
+      : settings_(machine.personality, firmware::axes_of(machine.personality, machine.stored)),
+        planner_(motion::rules_of(machine.personality.firmware), settings_.motion()) {
+    static_cast<void>(settings_.load(machine.stored));
+  }
+  void plan(const motion::PathLine& line) {
+    if (planner_.is_full()) {
+      speeds_ += planner_.current()->entry_speed_sqr;
+      planner_.discard_front();
+      ++blocks_;
+    }
+    planner_.plan(line);
+  }
+  [[nodiscard]] float speeds() const { return speeds_; }
+  [[nodiscard]] std::size_t blocks() const { return blocks_; }
+
+ private:
+  firmware::SettingsStore settings_;
+  motion::Planner planner_;
+  float speeds_ = 0;
+  std::size_t blocks_ = 0;
+};
+
 }  // namespace
 
 simulation::CaseMachine machine_for(const BenchProgram& program, vocabulary::Firmware firmware) {
@@ -44,44 +94,21 @@ std::size_t parse(const BenchProgram& program, vocabulary::Firmware firmware) {
 }
 
 std::vector<motion::PathLine> path_of(const BenchProgram& program, const simulation::CaseMachine& machine) {
-  const motion::MotionRules& rules = motion::rules_of(machine.personality.firmware);
-  const firmware::SettingsStore settings{machine.personality, firmware::axes_of(machine.personality, machine.stored)};
-  gcode::Interpreter interpreter(gcode::rules_for(machine.personality.firmware));
   std::vector<motion::PathLine> path;
-  vocabulary::AxisValues at{};
-  interpret_lines(program, interpreter, [&](const std::vector<gcode::Action>& actions) {
-    for (const gcode::Action& action : actions) {
-      std::visit(base::Overloaded{
-                     [&](const gcode::LinearMove& move) {
-                       path.push_back({.target_mm = at = move.target_mm, .feed = move.feed});
-                     },
-                     [&](const gcode::ArcMove& move) {
-                       motion::ArcChords chords(motion::arc_of(move, at), rules, settings.motion());
-                       while (const auto chord = chords.next())
-                         path.push_back({.target_mm = *chord, .feed = move.feed});
-                       at = move.target_mm;
-                     },
-                     [](const auto&) {},
-                 },
-                 action);
-    }
-  });
+  walk_path(program, machine, [&](const motion::PathLine& line) { path.push_back(line); });
   return path;
 }
 
 float plan(const std::vector<motion::PathLine>& path, const simulation::CaseMachine& machine) {
-  firmware::SettingsStore settings{machine.personality, firmware::axes_of(machine.personality, machine.stored)};
-  static_cast<void>(settings.load(machine.stored));
-  motion::Planner planner(motion::rules_of(machine.personality.firmware), settings.motion());
-  float speeds = 0;
-  for (const motion::PathLine& line : path) {
-    if (planner.is_full()) {
-      speeds += planner.current()->entry_speed_sqr;
-      planner.discard_front();
-    }
-    planner.plan(line);
-  }
-  return speeds;
+  FullPlanner planner(machine);
+  for (const motion::PathLine& line : path) planner.plan(line);
+  return planner.speeds();
+}
+
+std::size_t plan_whole(const BenchProgram& program, const simulation::CaseMachine& machine) {
+  FullPlanner planner(machine);
+  walk_path(program, machine, [&](motion::PathLine line) { planner.plan(line); });
+  return planner.speeds() < 0 ? 0 : planner.blocks();
 }
 
 simulation::MotionTrace simulate(const BenchProgram& program, const simulation::CaseMachine& machine) {

@@ -25,6 +25,9 @@ std::size_t parse(const BenchProgram& program, vocabulary::Firmware firmware);
 /// Plans them all through a queue that is always full: one block out, one in. Returns a sum of entry speeds.
 float plan(const std::vector<motion::PathLine>& path, const simulation::CaseMachine& machine);
 
+/// The same without keeping the path: bytes to blocks, for programs of any length. Returns the number of blocks.
+std::size_t plan_whole(const BenchProgram& program, const simulation::CaseMachine& machine);
+
 /// The whole virtual controller in virtual time, as `kerf simulate` runs it.
 [[nodiscard]] simulation::MotionTrace simulate(const BenchProgram& program, const simulation::CaseMachine& machine);
 

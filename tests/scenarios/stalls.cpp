@@ -144,6 +144,45 @@ TEST_P(Stalls, ADeadLinkIsNamedAndOverWhenItAnswers) {
   EXPECT_EQ(noted->note.text, told<session::JobStalled>(world)[0].stall.headline);
 }
 
+// Answers go on afterwards, each taken for an older line's, and the machine comes back to the path: the account would
+// tell only at the end of the job.
+TEST_P(Stalls, LinesThatASilenceSwallowedAreMissedWhenTheLinkAnswersAgain) {
+  World world{quick_serial(GetParam())};
+  std::string text = "G21G91\nG1F300\n";
+  for (int square = 0; square < 100; ++square) text += "X1\nY1\nX-1\nY-1\n";
+  ASSERT_TRUE(start(world, text, 3s));
+  const auto sent = lines_sent(world, streaming::Purpose::JobLine);
+  ASSERT_TRUE(
+      world.run_until([sent](const auto& at) { return lines_sent(at, streaming::Purpose::JobLine) > sent; }, 5s));
+  ASSERT_TRUE(world.order("link silent"));
+  const auto oldest = world.session().ledger().oldest().file_line;
+  world.run_for(4s);
+  ASSERT_TRUE(world.order("link restore"));
+  ASSERT_TRUE(world.run_until(is_held, 30s));
+  const auto job = *world.session().job();
+  // Where the path shows it first, that is as good.
+  ASSERT_TRUE(job.stall || job.departure) << job.reason;
+  if (job.stall) {
+    EXPECT_EQ(job.stall->cause, StallCause::LostLine) << job.stall->headline;
+    EXPECT_FALSE(job.stall->goes_on_at);
+  }
+  world.run_for(5s);
+  world.submit(session::StopJob{});
+  ASSERT_TRUE(world.run_until(is_over, 20s));
+  EXPECT_LE(world.session().job()->progress.executing.from, oldest);
+}
+
+TEST_P(Stalls, ASilenceInWhichNothingGotLostIsForgotten) {
+  World world{quick_serial(GetParam())};
+  ASSERT_TRUE(start(world, "G21G90\nG1X30F300\nX31\nX32\nX33\nX0F3000\n", 2s));
+  ASSERT_TRUE(world.order("link silent"));
+  world.run_for(3s);
+  ASSERT_TRUE(world.order("link restore"));
+  ASSERT_TRUE(world.run_until(is_over, 1min));
+  EXPECT_EQ(world.session().job()->phase, JobPhase::Finished) << world.session().job()->reason;
+  EXPECT_THAT(told<session::JobStalled>(world), SizeIs(1));
+}
+
 TEST_P(Stalls, WhatTheMachineWaitsForIsNamedWithoutAlarm) {
   auto options = quick_serial(GetParam());
   // Grbl and Rabbit report their buffers only when told to.

@@ -10,11 +10,12 @@ namespace kerf::job {
 /// What an interval of executing lines was concluded from, the weakest first.
 enum class ExecutingKnownBy {
   Nothing,        ///< not known: `from` and `to` mean nothing
+  Silence,        ///< the link was silent at `from`, and what was sent there may have got lost
   PlannerBlocks,  ///< what the planner can hold behind the line acknowledged last
   Position,       ///< where on the predicted path the machine was reported
   LineNumber,     ///< `Ln:` of a status report
 };
-BOOST_DESCRIBE_ENUM(ExecutingKnownBy, Nothing, PlannerBlocks, Position, LineNumber)
+BOOST_DESCRIBE_ENUM(ExecutingKnownBy, Nothing, Silence, PlannerBlocks, Position, LineNumber)
 
 /// File lines from 1, both ends included: everything before `from` has surely been executed, nothing after `to` has
 /// begun.

@@ -172,6 +172,8 @@ void Job::hold_for(Instant now, Stall stall) {
   goes_on_ = false;
   account_.reset();
   order(JobOrder::HoldFeeding);
+  // Lines are missing in what it executes.
+  if (moving_) order(JobOrder::FeedHold);
   enter(now, JobPhase::Held, HoldCause::Stall, stall.goes_on_at.has_value());
   state_.stall = std::move(stall);
 }

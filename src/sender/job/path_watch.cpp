@@ -44,6 +44,7 @@ void PathWatch::begin(Instant now, const std::optional<gcode::Interpreter>& read
   forecast_ = {};
   gap_told_ = stands_ = restarted_ = false;
   rested_at_mm_.reset();
+  stood_at_mm_.reset();
   const AxisValues start = snapshot.machine_position_mm ? axis_values(*snapshot.machine_position_mm) : AxisValues{};
   if (reader && snapshot.machine_position_mm) {
     forecast_.begin(*reader, start, rules);
@@ -77,12 +78,18 @@ std::optional<PathDeparture> PathWatch::on_report(Instant now, std::optional<Ins
   if (!stands) restarted_ = false;
   stands_ = stands;
   if (!snapshot.machine_position_mm || !follows_program(snapshot.state)) {
+    stood_at_mm_.reset();
     follower_.on_interlude();
     return std::nullopt;
   }
+  const AxisValues at_mm = axis_values(*snapshot.machine_position_mm);
+  const bool stays = stands && std::exchange(stood_at_mm_, at_mm) == at_mm;
+  // It still brakes, or the report is a damaged one, which may fit to where the path comes by again.
+  if (stands && !stays) return std::nullopt;
+  if (!stands) stood_at_mm_.reset();
   PathReport report{.arrived = now,
                     .asked = asked,
-                    .machine_mm = axis_values(*snapshot.machine_position_mm),
+                    .machine_mm = at_mm,
                     .axes = snapshot.machine_position_mm->size(),
                     .runs = snapshot.state == MachineState::Run,
                     .feed_mm_per_min = snapshot.feed_mm_per_min,

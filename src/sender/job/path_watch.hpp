@@ -55,6 +55,8 @@ class PathWatch {
   PathFollower follower_;
   /// Where it rested in the last report.
   std::optional<AxisValues> rested_at_mm_;
+  /// Where it stood in the last report, held in the middle of the path.
+  std::optional<AxisValues> stood_at_mm_;
   bool tells_work_position_ = false;
   bool gap_told_ = false;
   bool stands_ = false;

@@ -22,6 +22,7 @@ std::string because_of(ExecutingKnownBy known_by) {
   switch (known_by) {
     case ExecutingKnownBy::LineNumber: return "the controller reported the line number itself (Ln:)";
     case ExecutingKnownBy::Position: return "the last reported position lies on their path";
+    case ExecutingKnownBy::Silence: return "the link was silent there, and what was sent then may have got lost";
     case ExecutingKnownBy::PlannerBlocks:
       return "that is what the planner can hold behind the line that was acknowledged last";
     case ExecutingKnownBy::Nothing: break;

@@ -77,6 +77,19 @@ bool has_unread_lines(const StallFacts& facts) {
   return facts.rx_free && *facts.rx_free + 1 < facts.rx_bytes;
 }
 
+Stall by_silence(const StallFacts& facts) {
+  const std::string count = std::to_string(facts.owed_lines);
+  Stall stall = stall_of(facts, StallCause::LostLine,
+                         "Lines from " + std::to_string(facts.silent_from_line) +
+                             " on may not have arrived: the link was silent, and " + count +
+                             (facts.owed_lines == 1 ? " answer is missing." : " answers are missing."),
+                         {std::string(kStopStep), "Check cable and network: the link was interrupted."});
+  stall.file_line = facts.silent_from_line;
+  stall.evidence = {"The controller answers a question behind them, so it has read all that arrived.",
+                    "Answers do not say which line they are for: which one got lost is not known."};
+  return stall;
+}
+
 Stall by_proof(const StallFacts& facts) {
   if (facts.proof == StallProof::LineEndMissing) {
     auto stall = stall_of(facts, StallCause::LostLineEnd,
@@ -119,7 +132,9 @@ std::optional<Stall> diagnose(const StallFacts& facts) {
                     {"Look at the machine: it cuts on what it has already got.",
                      "Check cable and power. If it answers again, the job goes on by itself; else stop it."});
   }
-  if (facts.owed_lines == 0 || facts.unanswered_s < kPatience_s) return std::nullopt;
+  if (facts.owed_lines == 0) return std::nullopt;
+  if (facts.silent_from_line != 0 && facts.proof == StallProof::LinesRead) return by_silence(facts);
+  if (facts.unanswered_s < kPatience_s) return std::nullopt;
   if (auto stall = by_state(facts)) return stall;
   if (facts.state == MachineState::Run && facts.planner_free == 0) {
     return stall_of(facts, StallCause::PlannerFull, "The planner is full: a long move is under way.", {"Wait."});

@@ -84,6 +84,9 @@ struct StallFacts {
   double dwell_s = 0;
   double unanswered_s = 0;
   StallProof proof = StallProof::NotAsked;
+  /// The link was silent when this line was the oldest without an answer, and nothing has proven since that all were
+  /// answered; 0 otherwise.
+  std::uint32_t silent_from_line = 0;
   /// Behind so many of the owed lines the machine stands, as their targets and its position tell; empty if they do not.
   std::optional<std::size_t> executed_lines{};
   /// File line of the first owed line that was not executed, if `executed_lines` says so.

@@ -232,7 +232,10 @@ void Session::pump(Instant now) {
   // Before that the handshake looks after it.
   if (is_ready() && gate_.verdict(now) != GateVerdict::Open) return;
   if (tool_work_.must_wait()) return;
-  if (ledger().empty()) stall_.on_progress(now);
+  if (ledger().empty()) {
+    stall_.on_progress(now);
+    link_doubt_.on_account_settled();
+  }
   // An answer in a hold may be the last word of a controller that somebody resets: a line that followed it would be the
   // first one that it reads after its start, with default modes.
   streamer_.let_source_wait(has_job() && job_->stands());

@@ -16,6 +16,7 @@
 #include "sender/job/job.hpp"
 #include "sender/job/job_state.hpp"
 #include "sender/job/journal.hpp"
+#include "sender/job/link_doubt.hpp"
 #include "sender/job/path_watch.hpp"
 #include "sender/job/stop_sequence.hpp"
 #include "sender/machine/capabilities.hpp"
@@ -166,6 +167,7 @@ class Session {
   void follow_path(Instant now, std::optional<Instant> asked);
   void watch_stall(Instant now);
   void on_parser_state(Instant now);
+  void note_silence();
   void on_line_end_lost(Instant now, streaming::OwedLine line);
   void hold_for_stall(Instant now, std::vector<streaming::OwedLine> lines, job::StallProof proof);
   [[nodiscard]] job::StallFacts stall_facts() const;
@@ -230,6 +232,7 @@ class Session {
   std::optional<StartJob> waiting_start_;
   Instant start_until_ = kNever;
   job::StallWatch stall_;
+  job::LinkDoubt link_doubt_;
   /// What the job's lines come from.
   std::optional<JobFeed> feed_;
   /// Of motion that is no job's.

@@ -114,6 +114,7 @@ void Session::begin_job(Instant now, const StartJob& command) {
                 capabilities().features.tool_change, command.options);
   streamer_.feed_by(command.options.flow);
   streamer_.feed_from(feed_->lines_from(1));
+  link_doubt_ = {};
   path_.begin(now, incidents_.reader(), snapshot(), capabilities(), options_.machine_clock);
   const job::JobTerms terms{
       .has_error_latch = dialect().error_latch, .on_error = command.options.on_error, .flow = feed_->flow()};

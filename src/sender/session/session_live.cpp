@@ -49,6 +49,7 @@ void Session::poll(Instant now) {
   const auto silent_for_s = poller_.take_silence(now);
   if (!silent_for_s || may_be_silent()) return;
   tell(LinkSilent{*silent_for_s});
+  note_silence();
   if (has_job() && job_->state().hold_cause != job::HoldCause::Stall) {
     job::StallFacts facts = stall_facts();
     facts.link_is_dead = true;
@@ -133,7 +134,7 @@ void Session::follow_pendant(Instant now) {
 void Session::follow_path(Instant now, std::optional<Instant> asked) {
   if (!has_job() || job_->state().phase == job::JobPhase::Stopping) return;
   if (const auto departure = path_.on_report(now, asked, snapshot())) job_->on_departure(now, *departure);
-  job_->set_executing(path_.executing());
+  job_->set_executing(link_doubt_.widened(path_.executing()));
   if (auto gap = path_.take_gap()) {
     tell(PathUnwatched{.file_line = gap->file_line, .sentence = std::move(gap->sentence)});
   }

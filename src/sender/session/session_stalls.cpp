@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace {
 
 using streaming::OwedLine;
 using streaming::Purpose;
+using vocabulary::MachineState;
+
+/// A controller that answers it has read every line before it, and it moves nothing.
+constexpr std::string_view kQuestion = "$G";
 
 void describe_lines(job::StallFacts& facts, const auto& lines) {
   facts.owed_lines = lines.size();
@@ -50,17 +55,26 @@ void Session::watch_stall(Instant now) {
   constexpr std::size_t kQuestionBytes = 3;
   // Beyond the window nothing is sent, not even where it would fit.
   const bool has_room = ledger().bytes_in_flight() + kQuestionBytes <= streamer_.window();
-  if (stall_.take_question() && has_room) {
-    const OwedLine line = streamer_.interject(now, outbox_.lines, Purpose::Proof, "$G");
+  const bool calls_for_question = stall_.take_question() || (link_doubt_.is_question_due() && !ledger().empty());
+  if (calls_for_question && has_room && !ledger().owes(Purpose::Proof)) {
+    link_doubt_.on_asked();
+    const OwedLine line = streamer_.interject(now, outbox_.lines, Purpose::Proof, std::string{kQuestion});
     tell(LineSent{.purpose = line.purpose, .file_line = 0, .text = line.text});
   }
   job_->on_stall(std::move(stall));
 }
 
+void Session::note_silence() {
+  const auto first = std::ranges::find(ledger().owed(), Purpose::JobLine, &OwedLine::purpose);
+  if (has_job() && first != ledger().owed().end()) link_doubt_.on_silence(first->file_line);
+}
+
 // `[GC:` behind lines that owe answers: the controller has read all of them.
 void Session::on_parser_state(Instant now) {
-  if (stall_.proof() != job::StallProof::Asked || !ledger().owes(Purpose::Proof)) return;
+  const auto question = std::ranges::find(ledger().owed(), kQuestion, &OwedLine::text);
+  if (question == ledger().owed().end() || question->purpose != Purpose::Proof) return;
   auto lost = streamer_.strike_out_before(Purpose::Proof);
+  if (lost.empty()) link_doubt_.on_account_settled();
   if (lost.empty() || !has_job()) return;
   // A dwell of Kerf's own moves nothing, and an empty line does nothing: their answers are proven by the question's.
   const auto is_job_line = [](const OwedLine& line) { return line.purpose == Purpose::JobLine; };
@@ -71,6 +85,7 @@ void Session::on_parser_state(Instant now) {
     return;
   }
   std::erase_if(lost, [&](const OwedLine& line) { return !is_job_line(line); });
+  link_doubt_.on_lines_lost();
   hold_for_stall(now, std::move(lost), job::StallProof::LinesRead);
 }
 
@@ -89,7 +104,9 @@ void Session::hold_for_stall(Instant now, std::vector<OwedLine> lines, job::Stal
   describe_lines(facts, lines);
   facts.unanswered_s = stall_.unanswered_s(now);
   facts.proof = proof;
-  if (snapshot().machine_position_mm) {
+  facts.silent_from_line = link_doubt_.from_line().value_or(0);
+  const bool rests = facts.state == MachineState::Idle || facts.state == MachineState::Check;
+  if (rests && facts.silent_from_line == 0 && snapshot().machine_position_mm) {
     facts.executed_lines = incidents_.lines_behind(lines, *snapshot().machine_position_mm,
                                                    proof == job::StallProof::LinesRead ? &snapshot().modes : nullptr);
     const auto executed = facts.executed_lines.value_or(lines.size());

@@ -64,6 +64,8 @@ void Session::obey(Instant now, const ResumeJob&) {
     return;
   }
   if (has_job() && job_->state().departure) path_.on_overruled();
+  // Only a stall of which the lost lines are known can be resumed.
+  if (has_job() && job_->state().hold_cause == job::HoldCause::Stall) link_doubt_ = {};
   if (has_job())
     job_->resume(now);
   else
