@@ -16,8 +16,10 @@ template <typename Visit>
 void interpret_lines(const BenchProgram& program, gcode::Interpreter& interpreter, Visit visit) {
   gcode::LineReader reader(interpreter.rules().line);
   std::vector<gcode::Action> actions;
-  for (const char byte : program.text) {
-    const auto line = reader.push(byte);
+  for (std::string_view rest = program.text; !rest.empty();) {
+    const std::size_t end = rest.find('\n');
+    const auto line = reader.push_line(rest.substr(0, end));
+    rest.remove_prefix(end + 1);
     if (!line || line->text.empty()) continue;
     actions.clear();
     if (interpreter.interpret(line->text, actions)) visit(actions);

@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include "io/state_folder.hpp"
+#include "io/unpacking.hpp"
 
 namespace kerf::io {
 namespace {
@@ -99,6 +100,13 @@ int copy_file(int from, int to) {
   }
 }
 
+std::string head_of(int descriptor) {
+  std::string head(4, '\0');
+  const ssize_t got = ::pread(descriptor, head.data(), head.size(), 0);
+  head.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  return head;
+}
+
 bool is_same_state(const struct stat& before, const struct stat& after) {
   return before.st_size == after.st_size && before.st_mtim.tv_sec == after.st_mtim.tv_sec &&
          before.st_mtim.tv_nsec == after.st_mtim.tv_nsec;
@@ -149,6 +157,8 @@ std::expected<ProgramFile, ProgramFileError> ProgramFile::load(const std::string
   // What is neither file nor pipe is refused there.
   const bool is_file = S_ISREG(before.st_mode);
   if (!is_file && !S_ISFIFO(before.st_mode)) return held(path);
+  if (const Packing packing = is_file ? packing_of(head_of(original.get())) : Packing::None; packing != Packing::None)
+    return unpacked(path, original.get(), packing);
   if (is_file && std::cmp_less_equal(before.st_size, kMostHeldBytes)) return held(path);
   const Descriptor copy(open_nameless());
   if (!copy.is_open()) return failed(file_error(errno));
@@ -162,25 +172,46 @@ std::expected<ProgramFile, ProgramFileError> ProgramFile::load(const std::string
   return mapped(path, copy.get());
 }
 
+/// A text that comes in pieces: in memory while it is short, then in a file without a name.
+class ProgramFile::Assembly {
+ public:
+  /// The system's fault, 0 if none.
+  int put(std::string_view piece) {
+    if (copy_) return write_all(copy_->get(), piece);
+    text_ += piece;
+    if (text_.size() <= kMostHeldBytes) return 0;
+    copy_.emplace(open_nameless());
+    if (!copy_->is_open()) return errno;
+    const int fault = write_all(copy_->get(), text_);
+    text_ = {};
+    return fault;
+  }
+  [[nodiscard]] std::expected<ProgramFile, ProgramFileError> finish(const std::string& name) {
+    return copy_ ? mapped(name, copy_->get()) : held(name, std::move(text_));
+  }
+
+ private:
+  std::string text_;
+  std::optional<Descriptor> copy_;
+};
+
+std::expected<ProgramFile, ProgramFileError> ProgramFile::unpacked(const std::string& path, int packed,
+                                                                   Packing packing) {
+  Assembly assembly;
+  const auto done = unpack(packed, packing, [&assembly](std::string_view piece) { return assembly.put(piece); });
+  if (!done) return failed(done.error());
+  return assembly.finish(path);
+}
+
 std::expected<ProgramFile, ProgramFileError> ProgramFile::assemble(const std::string& name,
                                                                    const std::function<void(const Put&)>& write) {
-  std::string text;
-  std::optional<Descriptor> copy;
+  Assembly assembly;
   int fault = 0;
   write([&](std::string_view piece) {
-    if (fault != 0) return;
-    if (copy) {
-      fault = write_all(copy->get(), piece);
-      return;
-    }
-    text += piece;
-    if (text.size() <= kMostHeldBytes) return;
-    copy.emplace(open_nameless());
-    fault = copy->is_open() ? write_all(copy->get(), text) : errno;
-    text = {};
+    if (fault == 0) fault = assembly.put(piece);
   });
   if (fault != 0) return failed(file_error(fault));
-  return copy ? mapped(name, copy->get()) : held(name, std::move(text));
+  return assembly.finish(name);
 }
 
 std::expected<ProgramFile, ProgramFileError> ProgramFile::held(const std::string& path) {

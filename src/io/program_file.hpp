@@ -4,7 +4,7 @@
 // Nobody else's file is mapped, because one that is cut short while it is mapped kills the process that reads it, and
 // one that is saved again in the middle of a job would change the job. A short file is read; a long one is copied to a
 // file without a name in the state folder (at once where the file system shares blocks), and that is mapped. The system
-// takes the copy away with the process.
+// takes the copy away with the process. What is packed with gzip or zstd is unpacked on the way.
 
 #include <expected>
 #include <functional>
@@ -14,6 +14,7 @@
 #include <variant>
 
 #include "io/text_file.hpp"
+#include "io/unpacking.hpp"
 #include "sender/job/program.hpp"
 
 namespace kerf::io {
@@ -44,10 +45,14 @@ class ProgramFile {
 
  private:
   class Mapping;
+  class Assembly;
   ProgramFile() = default;
   [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> held(const std::string& path);
   [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> held(const std::string& path, std::string text);
   [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> mapped(const std::string& path, int copy);
+
+  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> unpacked(const std::string& path, int packed,
+                                                                             Packing packing);
 
   /// Null for a program in memory.
   std::shared_ptr<const Mapping> mapping_;

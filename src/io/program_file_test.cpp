@@ -3,12 +3,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <thread>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
+#include <zstd.h>
 
 namespace kerf::io {
 namespace {
@@ -45,6 +49,51 @@ TEST_F(ProgramFileTest, ShortAndLongFilesReadAlike) {
     ASSERT_EQ(program.line_count(), lines);
     const auto last = static_cast<std::uint32_t>(lines);
     EXPECT_EQ(program.line(last)->text, "G1X" + std::to_string(lines) + "F100");
+  }
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void pack_with_gzip(const std::string& from, const std::string& to) {
+  const std::string text = text_of(from);
+  const gzFile file = gzopen(to.c_str(), "wb");
+  EXPECT_EQ(gzwrite(file, text.data(), static_cast<unsigned>(text.size())), static_cast<int>(text.size()));
+  gzclose(file);
+}
+
+/// In two frames, as tools write that pack on several cores.
+void pack_with_zstd(const std::string& from, const std::string& to) {
+  const std::string text = text_of(from);
+  std::ofstream file(to, std::ios::binary);
+  for (const std::string_view part :
+       {std::string_view{text}.substr(0, text.size() / 2), std::string_view{text}.substr(text.size() / 2)}) {
+    std::string packed(ZSTD_compressBound(part.size()), '\0');
+    packed.resize(ZSTD_compress(packed.data(), packed.size(), part.data(), part.size(), 1));
+    file << packed;
+  }
+}
+
+TEST_F(ProgramFileTest, PackedFilesReadAsWhatTheyUnpackTo) {
+  const std::string packed = folder_ + "/packed.nc";
+  for (const std::size_t lines : {std::size_t{10}, kManyLines}) {
+    for (const auto pack : {&pack_with_gzip, &pack_with_zstd}) {
+      write(lines);
+      const auto plain = ProgramFile::load(path());
+      ASSERT_TRUE(plain);
+      pack(path(), packed);
+      const auto file = ProgramFile::load(packed);
+      ASSERT_TRUE(file) << explain(file.error(), packed);
+      EXPECT_EQ(file->program()->line_count(), lines);
+      EXPECT_EQ(file->program()->hash(), plain->program()->hash());
+      // Cut short it is no program, however far it can be unpacked.
+      std::filesystem::resize_file(packed, std::filesystem::file_size(packed) - 3);
+      const auto cut = ProgramFile::load(packed);
+      ASSERT_FALSE(cut);
+      EXPECT_THAT(explain(cut.error(), packed), testing::HasSubstr("damaged or cut short"));
+    }
   }
 }
 

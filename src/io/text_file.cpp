@@ -72,6 +72,10 @@ std::string explain(const FileError& error, std::string_view path) {
     case FileFault::NoRoom: return "The disk has no room for '" + name + "': make room, then try again.";
     case FileFault::Changing:
       return "'" + name + "' is being written to: wait until the program that makes it has finished, then try again.";
+    case FileFault::Damaged:
+      return "'" + name + "' is a packed file (gzip or zstd) and damaged or cut short: get it again.";
+    case FileFault::TooLarge:
+      return "'" + name + "' unpacks to more than 16 GB, which no program needs: choose another file.";
     case FileFault::Failed: break;
   }
   return "'" + name + "' cannot be used (" + error.system_text + "): check the disk, or copy the file elsewhere.";

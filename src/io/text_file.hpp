@@ -7,7 +7,7 @@
 
 namespace kerf::io {
 
-enum class FileFault { NotFound, NoPermission, IsDirectory, NotAFile, NoRoom, Changing, Failed };
+enum class FileFault { NotFound, NoPermission, IsDirectory, NotAFile, NoRoom, Changing, Damaged, TooLarge, Failed };
 
 struct FileError {
   FileFault fault{};

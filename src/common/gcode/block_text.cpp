@@ -1,8 +1,11 @@
 // A line becomes bare words: blanks and comments go, letters become capitals, each firmware in its own way
 // (protocol.md 6.3).
 
+#include <algorithm>
+
 #include "common/base/text.hpp"
 #include "common/gcode/block.hpp"
+#include "common/gcode/plain_text.hpp"
 #include "common/gcode/print_format.hpp"
 
 namespace kerf::gcode {
@@ -114,6 +117,12 @@ PreparedText normalize(std::string_view line, bool jog, BlockContext& context, B
 PreparedText prepare_text(std::string_view line, bool jog, BlockContext& context, BlockBuffer& buffer) {
   buffer.length = 0;
   PreparedText prepared;
+  if (line.size() < BlockBuffer::kCapacity && is_plain(line)) {
+    std::ranges::copy(line, buffer.text.begin());
+    buffer.length = line.size();
+    buffer.text[buffer.length] = '\0';
+    return prepared;
+  }
   switch (context.rules.block_text) {
     case BlockText::AsRead:
       for (const char c : line) buffer.append(c);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <expected>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "common/gcode/block.hpp"
@@ -79,6 +80,10 @@ class Collector {
   }
 
  private:
+  CommandNumber& number() {
+    if (unsplit_) split_ = split_number(rules_, *std::exchange(unsplit_, std::nullopt));
+    return split_;
+  }
   [[nodiscard]] bool takes(char letter) const { return rules_.value_letters.find(letter) != std::string_view::npos; }
 
   /// Assignments and O words. True if nothing is left of what `letter` begins; the block is finished if it was a
@@ -156,7 +161,7 @@ class Collector {
   ErrorCode read_value(char letter, const char* text, std::uint8_t& at) {
     if (rules_.reads_expressions) {
       if (const ErrorCode error = reader_.read_value(at, value_); error != ErrorCode::Ok) return error;
-      number_ = split_number(rules_, value_);
+      unsplit_ = value_;
       return ErrorCode::Ok;
     }
     if (letter == 'O' && takes('O')) {
@@ -166,12 +171,12 @@ class Collector {
       return read_whole(text, at, whole);
     }
     if (!read_float(rules_, text, at, value_)) return ErrorCode::BadNumberFormat;
-    number_ = split_number(rules_, value_);
+    unsplit_ = value_;
     return ErrorCode::Ok;
   }
 
   ErrorCode add_word(char letter) {
-    if (letter == 'G') return add_command(rules_.commands->g(number_.whole));
+    if (letter == 'G') return add_command(rules_.commands->g(number().whole));
     if (letter == 'M') return add_m();
     return add_value(letter);
   }
@@ -185,16 +190,16 @@ class Collector {
       block_.written['M' - 'A'] = value_;
       return ErrorCode::Ok;
     }
-    if (number_.hundredths > 0 && (rules_.byte_commands || number_.whole <= 99))
+    if (number().hundredths > 0 && (rules_.byte_commands || number().whole <= 99))
       return ErrorCode::CommandValueNotInteger;
-    return add_command(rules_.commands->m(number_.whole));
+    return add_command(rules_.commands->m(number().whole));
   }
 
   ErrorCode add_command(std::span<const CommandRow> rows) {
     if (rows.empty()) return ErrorCode::UnsupportedCommand;
     const CommandRow* row = nullptr;
     for (const CommandRow& candidate : rows)
-      if (candidate.hundredths == number_.hundredths) row = &candidate;
+      if (candidate.hundredths == number().hundredths) row = &candidate;
 
     const CommandRow& first = rows.front();
     const bool is_lathe_word = first.meaning == Meaning::Diameter || first.meaning == Meaning::SurfaceSpeed;
@@ -208,7 +213,7 @@ class Collector {
     if (row->claim == Claim::IfFree && is_claimed()) return ErrorCode::AxisCommandConflict;
     if (row->claim != Claim::No) block_.axis_command = row->claims_as;
 
-    number_.hundredths = 0;
+    number().hundredths = 0;
     const auto group = apply(*row);
     if (!group) return ErrorCode::UnsupportedCommand;
     if (block_.groups.has(*group)) return ErrorCode::ModalGroupViolation;
@@ -317,7 +322,7 @@ class Collector {
         break;
       }
       case 'D': block_.d = value_; break;
-      case 'E': block_.e = static_cast<std::uint8_t>(number_.whole); break;
+      case 'E': block_.e = static_cast<std::uint8_t>(number().whole); break;
       case 'F': block_.f = value_; break;
       case 'H': block_.h = value_; break;
       case 'L': return store_l();
@@ -326,8 +331,8 @@ class Collector {
         skips_ = context_.flow.skips();
         break;
       case 'O':
-        if (number_.hundredths != 0) return ErrorCode::CommandValueNotInteger;
-        block_.label = {.number = static_cast<std::uint32_t>(number_.whole), .name = {}};
+        if (number().hundredths != 0) return ErrorCode::CommandValueNotInteger;
+        block_.label = {.number = static_cast<std::uint32_t>(number().whole), .name = {}};
         break;
       case 'P': block_.p = value_; break;
       case 'Q': block_.q = value_; break;
@@ -335,7 +340,7 @@ class Collector {
       case 'S': block_.s = value_; break;
       case 'T': return store_tool();
       case '$':
-        if (number_.hundredths > 0) return ErrorCode::CommandValueNotInteger;
+        if (number().hundredths > 0) return ErrorCode::CommandValueNotInteger;
         block_.spindle_id = to_int32(value_);
         break;
       default: break;
@@ -354,16 +359,16 @@ class Collector {
 
   /// grblHAL asks for a whole number here; Grbl and Rabbit cut it.
   ErrorCode store_l() {
-    if (!rules_.byte_commands && number_.hundredths > 0) return ErrorCode::CommandValueNotInteger;
-    block_.l = static_cast<std::uint8_t>(number_.whole);
+    if (!rules_.byte_commands && number().hundredths > 0) return ErrorCode::CommandValueNotInteger;
+    block_.l = static_cast<std::uint8_t>(number().whole);
     return ErrorCode::Ok;
   }
 
   ErrorCode store_tool() {
     if (rules_.tool_max_at_once > 0.0F && value_ > rules_.tool_max_at_once) return ErrorCode::IllegalToolNumber;
     block_.has_tool_word = true;
-    block_.t = rules_.byte_commands ? static_cast<float>(number_.whole) : value_;
-    if (rules_.tool_word_acts_at_once) context_.state.tool = static_cast<std::uint32_t>(number_.whole);
+    block_.t = rules_.byte_commands ? static_cast<float>(number().whole) : value_;
+    if (rules_.tool_word_acts_at_once) context_.state.tool = static_cast<std::uint32_t>(number().whole);
     return ErrorCode::Ok;
   }
 
@@ -375,7 +380,9 @@ class Collector {
   ExpressionReader reader_;
   bool skips_;
   float value_ = 0.0F;
-  CommandNumber number_;
+  /// The number read last, split when somebody asks: coordinates never are.
+  std::optional<float> unsplit_;
+  CommandNumber split_;
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "common/gcode/line_reader.hpp"
 
+#include "common/gcode/plain_text.hpp"
+
 namespace kerf::gcode {
 
 namespace {
@@ -37,6 +39,17 @@ std::optional<ReadLine> LineReader::push(char byte) {
     case LineRules::Filter::TrimLeading: take_trimmed(byte); break;
   }
   return std::nullopt;
+}
+
+std::optional<ReadLine> LineReader::push_line(std::string_view line) {
+  if (!is_mid_line() && !line.empty() && line.size() <= rules_.length_max && is_plain(line)) {
+    start_line();
+    delivered_ = true;
+    last_end_ = '\n';
+    return ReadLine{.text = line};
+  }
+  for (const char byte : line) static_cast<void>(push(byte));
+  return push('\n');
 }
 
 void LineReader::block_failed() {

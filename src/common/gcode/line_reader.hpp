@@ -26,6 +26,10 @@ class LineReader {
   /// One byte more; a value when it ends a line that the firmware answers.
   std::optional<ReadLine> push(char byte);
 
+  /// All bytes of `line`, which holds no line end, and a line feed behind them. The text is valid as long as `line` and
+  /// until the next push.
+  std::optional<ReadLine> push_line(std::string_view line);
+
   /// The line just delivered was a block that failed: on grblHAL the LF of its CR LF then counts as an empty line
   /// (protocol.md 6.4).
   void block_failed();

@@ -103,6 +103,29 @@ TEST(LineReader, ClearForgetsTheHalfLine) {
   EXPECT_EQ(reader.push('\n')->text, "");
 }
 
+RC_GTEST_PROP(LineReaderProperty, AWholeLineIsAsItsBytes, ()) {
+  const auto letter = rc::gen::element('G', 'X', '1', '.', '-', 'x', ' ', '(', ')', ';', '/', '%', '\r', '\b', '$');
+  const auto piece =
+      rc::gen::pair(rc::gen::container<std::string>(letter), rc::gen::element<std::string>("G1X2", "", "G"));
+  const auto pieces = *rc::gen::container<std::vector<std::pair<std::string, std::string>>>(piece);
+  for (const Firmware firmware : {Firmware::Grbl, Firmware::Rabbit, Firmware::GrblHal}) {
+    LineReader by_bytes(rules_for(firmware).line);
+    LineReader by_lines(rules_for(firmware).line);
+    for (const auto& [bytes, line] : pieces) {
+      for (const char byte : bytes) {
+        static_cast<void>(by_bytes.push(byte));
+        static_cast<void>(by_lines.push(byte));
+      }
+      for (const char byte : line) static_cast<void>(by_bytes.push(byte));
+      const auto one = by_bytes.push('\n');
+      const auto other = by_lines.push_line(line);
+      RC_ASSERT(one.has_value() == other.has_value());
+      if (one) RC_ASSERT(one->text == other->text && one->overlong == other->overlong);
+      RC_ASSERT(by_bytes.is_mid_line() == by_lines.is_mid_line());
+    }
+  }
+}
+
 RC_GTEST_PROP(LineReaderProperty, NeverGivesMoreThanItsRules, (const std::string& bytes)) {
   for (const Firmware firmware : {Firmware::Grbl, Firmware::Rabbit, Firmware::GrblHal}) {
     const LineRules rules = rules_for(firmware).line;

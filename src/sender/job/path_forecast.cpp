@@ -152,8 +152,7 @@ std::optional<std::string_view> PathForecast::why_unreadable(std::string_view te
 }
 
 std::string_view PathForecast::as_read(std::string_view text) {
-  for (const char letter : text) static_cast<void>(lines_->push(letter));
-  const auto line = lines_->push('\n');
+  const auto line = lines_->push_line(text);
   return line ? line->text : std::string_view{};
 }
 
