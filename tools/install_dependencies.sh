@@ -4,8 +4,8 @@ set -euo pipefail
 
 # Boost is named by its version: 1.81 conflicts with Debian's default 1.74.
 run_packages=(make g++ cmake ninja-build pkg-config libboost1.81-dev libfmt-dev nlohmann-json3-dev libcli11-dev
-  libedit-dev libudev-dev libavahi-client-dev zlib1g-dev libzstd-dev libxxhash-dev libsqlite3-dev libsqlitecpp-dev libsystemd-dev
-  libcairo2-dev fonts-dejavu-core)
+  libedit-dev libudev-dev libavahi-client-dev zlib1g-dev libzstd-dev libxxhash-dev libsqlite3-dev libsqlitecpp-dev
+  libsystemd-dev libcairo2-dev fonts-dejavu-core)
 test_packages=(ccache libgtest-dev libgmock-dev librapidcheck-dev python3 clang-19 libclang-rt-19-dev
   clang-format-19)
 lint_packages=(clang-tidy-19 git)
