@@ -178,11 +178,14 @@ Markup& Markup::heads(std::initializer_list<std::string_view> names) {
 void add_head(Markup& page, const Report& report) {
   page.raw("<header><div><h1>").text(report.file.name).raw("</h1><p class=\"soft\">");
   page.text("Job report for " + report.firmware + " with " + report.settings).raw("</p></div>\n");
-  const CheckResult& check = report.check;
-  if (check.errors > 0) {
-    page.raw("<div class=\"verdict error\">").text(counted(check.errors, "error")).raw("</div>");
-  } else if (check.warnings > 0) {
-    page.raw("<div class=\"verdict warning\">").text(counted(check.warnings, "warning")).raw("</div>");
+  // Kinds of them: a feed that is too high is one thing, on however many lines.
+  const auto kinds = [&report](Severity severity) {
+    return static_cast<std::uint64_t>(std::ranges::count(report.check.groups, severity, &FindingGroup::severity));
+  };
+  if (const auto errors = kinds(Severity::Error); errors > 0) {
+    page.raw("<div class=\"verdict error\">").text(counted(errors, "error")).raw("</div>");
+  } else if (const auto warnings = kinds(Severity::Warning); warnings > 0) {
+    page.raw("<div class=\"verdict warning\">").text(counted(warnings, "warning")).raw("</div>");
   } else {
     page.raw("<div class=\"verdict good\">Nothing against it</div>");
   }

@@ -22,7 +22,7 @@ p { margin: 0 0 8px }
 .good { background: #e3f4ea; color: #14663a }
 .warning { background: #fdf0d5; color: #8a5600 }
 .error { background: #fde4e1; color: #a61b1b }
-.figures { display: grid; grid-template-columns: 1fr 1.6fr 1.3fr 1fr; margin: 22px 0 10px;
+.figures { display: grid; grid-template-columns: 1fr 1.8fr 1.3fr 1fr; margin: 22px 0 10px;
   border-top: 1px solid #e3e8ed;
   border-bottom: 1px solid #e3e8ed }
 .figures div { padding: 12px 14px 12px 0 }
@@ -70,7 +70,9 @@ code { font: 12px/1.4 ui-monospace, 'DejaVu Sans Mono', Menlo, Consolas, monospa
 footer { margin-top: 36px; padding-top: 10px; border-top: 1px solid #e3e8ed; font-size: 12px; color: #66717d }
 @media (max-width: 640px) { body { padding: 20px } .figures { grid-template-columns: 1fr 1fr }
   .views { grid-template-columns: 1fr } }
-@media print { .swatch { top: 8px } .bar svg { margin-top: 4px } .legend { font-size: 8pt; gap: 2px 18px }
+@media print { .swatch { top: 8px } .bar svg { margin-top: 4px } .figures dd { font-size: 13pt }
+  .figures dd small { font-size: 8pt }
+  .legend { font-size: 8pt; gap: 2px 18px }
   .hero svg { width: auto; max-width: 100%; max-height: 98mm; margin: 0 auto }
   html, body { background: #fff } body { max-width: none; padding: 0; font-size: 9.5pt } h2 { margin-top: 22px }
   .views, .figures { break-inside: avoid } }

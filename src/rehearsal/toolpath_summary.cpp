@@ -29,7 +29,13 @@ void PathSummer::add(const PathChunk& chunk) {
 }
 
 void PathSummer::add_cut(const Point& from_mm, const PathVertex& vertex, double length_mm) {
-  include_motion(sum_.cuts, from_mm, vertex);
+  // A plunge begins in the air above, and a retract ends there.
+  const bool is_upright = from_mm[0] == vertex.at_mm[0] && from_mm[1] == vertex.at_mm[1] && !is_arc(vertex.kind);
+  if (is_upright) {
+    sum_.cuts.include(from_mm[kZ] < vertex.at_mm[kZ] ? from_mm : vertex.at_mm);
+  } else {
+    include_motion(sum_.cuts, from_mm, vertex);
+  }
   sum_.cut_mm += length_mm;
   ++sum_.cut_count;
   if (is_arc(vertex.kind)) ++sum_.arc_count;

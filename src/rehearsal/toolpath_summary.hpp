@@ -37,6 +37,7 @@ struct ToolUse {
 /// Of the motion whose places are known; see PathVertex::unknown_axes.
 struct PathSummary {
   PathBounds bounds{};
+  /// Of the cuts, without the air above a plunge.
   PathBounds cuts{};
   Extent feed_mm_per_min{};
   Extent spindle_rpm{};
