@@ -56,7 +56,7 @@ class CheckedJobPreparation final : public JobPreparation {
                        form_of(session, job_.options));
       if (job_.program->size_bytes() > kLongBytes) return KeepWaiting{true, "Checking the program first."};
     }
-    if (checker_->read_on(kPieceBytes)) return KeepWaiting{.is_at_work = true};
+    if (checker_->read_on(kPieceBytes)) return KeepWaiting{.is_at_work = true, .sentence = progress()};
     return settle(checker_->finish(), session.capabilities().firmware);
   }
 
@@ -76,12 +76,22 @@ class CheckedJobPreparation final : public JobPreparation {
                  .status = ExitStatus::Refused};
   }
 
+  /// Now and then, where it takes long.
+  [[nodiscard]] std::string progress() {
+    constexpr int kTenths = 10;
+    const int tenths = static_cast<int>(checker_->share_read() * kTenths);
+    if (job_.program->size_bytes() <= kLongBytes || tenths <= told_tenths_) return {};
+    told_tenths_ = tenths;
+    return fmt::format("Checked {} % of the program.", tenths * kTenths);
+  }
+
   [[nodiscard]] BeginJob begin(Told told) const {
     return {.told = std::move(told), .job = {.program = job_.program, .origin = job_.origin}};
   }
 
   CheckedJob job_;
   std::optional<Checker> checker_;
+  int told_tenths_ = 0;
 };
 
 }  // namespace

@@ -17,10 +17,20 @@ constexpr std::size_t kMostSuspects = 16;
 constexpr int kMostSteps = 4096;
 
 std::size_t field_at(float x_mm, float y_mm) {
-  const auto wrapped = [](float mm) {
-    return static_cast<std::size_t>(static_cast<std::int64_t>(std::floor(mm / kFieldMm))) % kFields;
+  const auto wrapped = [](float mm) -> std::size_t {
+    constexpr auto kRow = static_cast<float>(kFields);
+    const float field = std::fmod(std::floor(mm / kFieldMm), kRow);
+    // Numbers without end have no place.
+    if (!std::isfinite(field)) return 0;
+    return static_cast<std::size_t>(field < 0 ? field + kRow : field);
   };
   return wrapped(y_mm) * kFields + wrapped(x_mm);
+}
+
+/// Fields along a way, as far as they are marked.
+int steps_along(float mm) {
+  const float fields = mm / kFieldMm;
+  return fields < static_cast<float>(kMostSteps) ? static_cast<int>(fields) : kMostSteps;
 }
 
 }  // namespace
@@ -52,7 +62,7 @@ void HeightRule::mark_cut(const CheckedMove& move) {
     const float center_y = from[1] + move.arc->center_offset_mm[1];
     const float radius = std::hypot(move.arc->center_offset_mm[0], move.arc->center_offset_mm[1]);
     constexpr float kTurn = 6.2831853F;
-    const int steps = std::clamp(static_cast<int>(radius * kTurn / kFieldMm), 1, kMostSteps);
+    const int steps = std::max(steps_along(radius * kTurn), 1);
     // The rest of the circle is marked too where less than a turn is cut: then a finding may be missed.
     for (int step = 0; step < steps; ++step) {
       const float angle = kTurn * static_cast<float>(step) / static_cast<float>(steps);
@@ -60,7 +70,7 @@ void HeightRule::mark_cut(const CheckedMove& move) {
     }
   }
   const float length = std::max(std::abs(to[0] - from[0]), std::abs(to[1] - from[1]));
-  const int steps = std::clamp(static_cast<int>(length / kFieldMm), 0, kMostSteps);
+  const int steps = steps_along(length);
   for (int step = 1; step <= steps; ++step) {
     const float share = static_cast<float>(step) / static_cast<float>(steps + 1);
     mark(from[0] + (to[0] - from[0]) * share, from[1] + (to[1] - from[1]) * share,

@@ -66,7 +66,9 @@ std::optional<TravelRule::Excess> TravelRule::excess_on_arc(const CheckedMove& m
   std::optional<Excess> worst;
   while (const auto chord = chords.next()) {
     const auto excess = excess_at(*chord, axes, 0);
-    if (excess && (!worst || worst->excess_mm < excess->excess_mm)) worst = excess;
+    // Up to the first place where it turns back: there may be very many turns.
+    if (worst && (!excess || excess->excess_mm < worst->excess_mm)) break;
+    if (excess) worst = excess;
   }
   return worst;
 }
