@@ -13,6 +13,8 @@ constexpr double kQuarterTurn = std::numbers::pi / 2;
 constexpr double kSameAngle = 5e-7;
 /// Nobody sees more on any screen, and a tolerance of nothing must end too.
 constexpr double kMostChordsOfTurn = 2048;
+/// Many turns of one line are not worth the memory.
+constexpr double kMostChords = 20'000;
 constexpr int kMostTurns = 1000;
 
 struct PlaneOrder {
@@ -109,7 +111,7 @@ void append_chords(const Point& start_mm, const PathVertex& end, float tolerance
   const double tolerance = static_cast<double>(tolerance_mm);
   // The sagitta of a chord over the angle a is r(1 - cos(a/2)).
   const double step = tolerance < radius ? 2 * std::acos(1 - tolerance / radius) : std::numbers::pi;
-  const double most = kMostChordsOfTurn * std::ceil(sweep.swept_rad() / kFullTurn);
+  const double most = std::min(kMostChordsOfTurn * std::ceil(sweep.swept_rad() / kFullTurn), kMostChords);
   const double wanted = std::ceil(sweep.swept_rad() / std::max(step, 1e-6));
   const auto chords = static_cast<std::size_t>(std::clamp(wanted, 1.0, most));
   for (std::size_t chord = 1; chord < chords; ++chord) {

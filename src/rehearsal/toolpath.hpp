@@ -108,8 +108,8 @@ struct PathChunk {
   PathBounds bounds{};
 };
 
-/// The arc from `start_mm` to `end` in chords that leave it by at most `tolerance_mm`: appends their ends, of which the
-/// last is the arc's own.
+/// The arc from `start_mm` to `end` in chords that leave it by at most `tolerance_mm`, unless that took more than 2048
+/// for a turn, or 20,000 in all: appends their ends, of which the last is the arc's own.
 void append_chords(const Point& start_mm, const PathVertex& end, float tolerance_mm, std::vector<Point>& out);
 
 /// Adds the motion from `start_mm` to `end`, arcs to their full extent.
