@@ -58,6 +58,11 @@ std::vector<PlacedWord> words_in(std::string_view line) {
 
 }  // namespace
 
+int PlacedWord::whole() const {
+  constexpr double kMost = 1e9;
+  return static_cast<int>(std::clamp(value, -kMost, kMost));
+}
+
 LineText::LineText(std::string line) : line_(std::move(line)), words_(words_in(line_)) {
   for (std::size_t at = 1; at < words_.size(); ++at) {
     is_spaced_ = is_spaced_ || words_[at].begin > words_[at - 1].end;
@@ -73,7 +78,7 @@ const PlacedWord* LineText::find(char letter) const {
 
 const PlacedWord* LineText::find_command(char letter, double number) const {
   const auto found = std::ranges::find_if(words_, [&](const PlacedWord& word) {
-    return word.letter == letter && !word.digits.empty() && std::lround(word.value * 10) == std::lround(number * 10);
+    return word.letter == letter && !word.digits.empty() && std::round(word.value * 10) == std::round(number * 10);
   });
   return found == words_.end() ? nullptr : &*found;
 }
@@ -82,7 +87,7 @@ std::string LineText::plain_words(std::span<const int> without_m) const {
   std::string plain;
   for (const PlacedWord& word : words_) {
     const bool is_left_out = word.letter == 'M' && !word.digits.empty() && std::trunc(word.value) == word.value &&
-                             std::ranges::find(without_m, static_cast<int>(word.value)) != without_m.end();
+                             std::ranges::find(without_m, word.whole()) != without_m.end();
     if (!is_left_out) (plain += word.letter) += word.digits;
   }
   return plain;

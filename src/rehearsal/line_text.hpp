@@ -18,6 +18,9 @@ struct PlacedWord {
   /// Without blanks and `+`; what is no number has none.
   std::string digits{};
   double value = 0;
+
+  /// The value without its fraction, as far as an int reaches.
+  [[nodiscard]] int whole() const;
 };
 
 /// Edits are collected and take effect together in text(), so that places stay those of the line as it was.

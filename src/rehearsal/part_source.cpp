@@ -57,7 +57,7 @@ void PartSource::note(const LineText& text, const LineFacts& facts, std::uint32_
   if (renames) past_.renaming_line = number;
   for (int word = 54; word <= 59; ++word)
     past_.zero_was_selected = past_.zero_was_selected || text.has_command('G', word);
-  if (const PlacedWord* const tool = text.find('T')) past_.tool = static_cast<int>(tool->value);
+  if (const PlacedWord* const tool = text.find('T')) past_.tool = tool->whole();
   if (facts.changes_tool) past_.tool_in_spindle = past_.tool.value_or(0);
   if (text.has_command('G', 49)) past_.length_word.clear();
   if (text.has_command('G', 43)) {

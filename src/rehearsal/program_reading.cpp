@@ -29,11 +29,11 @@ std::unexpected<TransformRefusal> refuse(std::uint32_t line, std::string reason)
 /// G10 by its L; P tells whose.
 AxisUse use_of_g10(const LineText& line, const gcode::ModalState& modal) {
   const PlacedWord* const kind = line.find('L');
-  const long l = kind == nullptr ? 0 : std::lround(kind->value);
+  const int l = kind == nullptr ? 0 : kind->whole();
   if (l == 2) return AxisUse::OffsetValue;
   if (l != 20) return AxisUse::ToolTable;
   const PlacedWord* const which = line.find('P');
-  const long p = which == nullptr ? 0 : static_cast<long>(which->value);
+  const int p = which == nullptr ? 0 : which->whole();
   return p == 0 || p == modal.work_offset + 1 ? AxisUse::NamesPlace : AxisUse::NamesElsewhere;
 }
 
@@ -197,6 +197,12 @@ std::expected<LineFacts, TransformRefusal> ProgramReading::read(const LineText& 
                   "Correct it first.");
   }
   if (line.words().empty()) return facts;
+  constexpr double kFarthest = 1e6;
+  for (const PlacedWord& word : line.words()) {
+    if (std::string_view{"XYZABCUVWIJKRPQ"}.contains(word.letter) && std::abs(word.value) > kFarthest) {
+      return refuse(number, "A number of this line is too large for any machine. Correct it first.");
+    }
+  }
   if (job::needs_a_computer(wire_, job::words_of(wire_))) {
     return refuse(number,
                   "This line calls a macro or a subroutine, and what that does is known to the controller "

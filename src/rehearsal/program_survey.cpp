@@ -13,7 +13,7 @@ bool is_motion(AxisUse use) {
 class Surveyor {
  public:
   void add(const LineText& text, const LineFacts& facts, std::uint32_t number) {
-    if (const PlacedWord* const tool = text.find('T')) survey_.tools.insert(static_cast<int>(tool->value));
+    if (const PlacedWord* const tool = text.find('T')) survey_.tools.insert(tool->whole());
     if (facts.changes_tool && survey_.tool_change_line == 0) survey_.tool_change_line = number;
     const bool renames = facts.use == AxisUse::NamesPlace || facts.use == AxisUse::NamesElsewhere ||
                          facts.use == AxisUse::OffsetValue || facts.use == AxisUse::ToolTable ||

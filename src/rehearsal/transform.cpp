@@ -178,7 +178,7 @@ std::expected<std::vector<ToolPart>, TransformRefusal> tool_parts(const job::Pro
     if (!facts) return std::unexpected{facts.error()};
     if (facts->is_over) break;
     const PlacedWord* const tool = text.find('T');
-    if (tool != nullptr) named = static_cast<int>(tool->value);
+    if (tool != nullptr) named = tool->whole();
     const auto begin = [&](std::vector<ToolPart>& parts) {
       if (parts.back().tool == named) return;
       // What stands in front of the first tool belongs to it.

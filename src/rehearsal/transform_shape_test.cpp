@@ -58,7 +58,10 @@ bool runs_along(const Path& corners, const Path& path, double tolerance_mm) {
   std::size_t at = 0;
   for (const Place& corner : corners) {
     while (at + 1 < path.size() && distance_to_segment(corner, path[at], path[at + 1]) > tolerance_mm) ++at;
-    if (at + 1 >= path.size()) return false;
+    if (at + 1 < path.size()) continue;
+    RC_LOG("lost at X" + std::to_string(corner[0]) + " Y" + std::to_string(corner[1]) + " Z" +
+           std::to_string(corner[2]));
+    return false;
   }
   return true;
 }
@@ -99,6 +102,7 @@ RC_GTEST_PROP(TransformShape, ArcsBecomeLinesWithinTheTolerance, ()) {
     const Traced before = traced(program, firmware);
     const Traced after = traced(text, firmware);
     RC_ASSERT(before.is_clean && after.is_clean);
+    RC_LOG(program + "---\n" + text);
     expect_same_way(before.path, after.path, tolerance_mm + kFirmwareArc_mm);
   }
 }

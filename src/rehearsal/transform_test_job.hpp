@@ -26,8 +26,9 @@ inline constexpr double kTestSteps = 320.0;
 inline simulation::CaseMachine test_machine(vocabulary::Firmware firmware) {
   simulation::CaseMachine machine{.personality = firmware::personality_of(firmware)};
   machine.stored.initialised = true;
-  machine.stored.settings = {{"1", "255"},    {"100", "320"},  {"101", "320"},  {"102", "320"},  {"110", "6000"},
-                             {"111", "6000"}, {"112", "6000"}, {"120", "2000"}, {"121", "2000"}, {"122", "2000"}};
+  machine.stored.settings = {{"1", "255"},    {"12", "0.002"}, {"100", "320"},  {"101", "320"},
+                             {"102", "320"},  {"110", "6000"}, {"111", "6000"}, {"112", "6000"},
+                             {"120", "2000"}, {"121", "2000"}, {"122", "2000"}};
   return machine;
 }
 

@@ -26,7 +26,7 @@ TransformStep step_of(std::uint8_t kind, std::uint8_t value) {
     case 0: return Translate{some_mm(value), some_mm(value / 2), 0.5};
     case 1: return Rotate{value * 1.5, some_mm(value), 1};
     case 2: return Mirror{static_cast<MirrorAxis>(value % 3), some_mm(value)};
-    case 3: return Scale{1 + value / 100.0, 1 + value / 100.0, 1 + value % 2};
+    case 3: return Scale{1 + value / 100.0, 1 + value / 100.0, 1.0 + value % 2};
     case 4: return ConvertUnits{static_cast<LengthUnit>(value % 2)};
     case 5: return TrimDecimals{value % 7};
     case 6: return StripComments{};
