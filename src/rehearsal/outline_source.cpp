@@ -14,9 +14,6 @@ namespace kerf::rehearsal {
 namespace {
 
 constexpr AxisMask kPlane = mask_of_axis(kX) | mask_of_axis(kY);
-/// So many corners are kept before only those of their hull are.
-constexpr std::size_t kMostCorners = 4096;
-
 double cross(const Corner& from, const Corner& one, const Corner& other) {
   return (one[0] - from[0]) * (other[1] - from[1]) - (one[1] - from[1]) * (other[0] - from[0]);
 }
@@ -65,6 +62,7 @@ OutlineSource::OutlineSource(std::unique_ptr<LineSource> before, OutlineShape sh
 void OutlineSource::rewind() {
   before_->rewind();
   corners_.clear();
+  most_corners_ = kMostCorners;
   highest_cut_mm_.reset();
   has_begun_ = false;
   queue_.clear();
@@ -77,7 +75,10 @@ void OutlineSource::collect_warnings(std::deque<TransformWarning>& out) const {
 
 void OutlineSource::add_corner(Corner corner) {
   corners_.push_back(corner);
-  if (corners_.size() > kMostCorners) corners_ = hull_of(std::move(corners_));
+  if (corners_.size() <= most_corners_) return;
+  corners_ = hull_of(std::move(corners_));
+  // A hull that is large itself must not be sought again at every corner.
+  most_corners_ = std::max(kMostCorners, 2 * corners_.size());
 }
 
 void OutlineSource::add(const LineFacts& facts, const ProgramReading& reading) {
@@ -98,12 +99,16 @@ void OutlineSource::add(const LineFacts& facts, const ProgramReading& reading) {
   if (arc == nullptr) return;
   const auto offset = reading.interpreter().work_coordinate_offset();
   constexpr float kTolerance_mm = 0.005F;
+  constexpr float kShareOfRadius = 1e-5F;
   const auto add_place = [&](const vocabulary::AxisValues& place) {
     add_corner({static_cast<double>(place[kX] - offset[kX]), static_cast<double>(place[kY] - offset[kY])});
   };
-  const motion::Arc curve = motion::arc_of(*arc, facts.from_machine_mm);
-  motion::ArcChords chords(curve, motion::rules_of(dialect_->firmware),
-                           {.axes = dialect_->axes_max, .arc_tolerance_mm = kTolerance_mm});
+  motion::Arc curve = motion::arc_of(*arc, facts.from_machine_mm);
+  // More turns go the same way.
+  curve.turns = std::min(curve.turns, 2);
+  motion::ArcChords chords(
+      curve, motion::rules_of(dialect_->firmware),
+      {.axes = dialect_->axes_max, .arc_tolerance_mm = std::max(kTolerance_mm, curve.radius_mm * kShareOfRadius)});
   while (const auto place = chords.next()) add_place(*place);
   for (const auto& place : motion::extremes_of(curve)) add_place(place);
 }

@@ -42,7 +42,10 @@ class OutlineSource : public LineSource {
   OutlineShape shape_;
   double feed_mm_per_min_;
   const vocabulary::Dialect* dialect_;
+  /// So many corners are kept before only those of their hull are.
+  static constexpr std::size_t kMostCorners = 4096;
   std::vector<Corner> corners_;
+  std::size_t most_corners_ = kMostCorners;
   std::optional<double> highest_cut_mm_;
   bool has_begun_ = false;
   LineQueue queue_;
