@@ -11,7 +11,9 @@ namespace {
 /// Digits that the firmware counts in front of the point: "0.5" has one.
 int whole_digits(double value) {
   int digits = 1;
-  for (double rest = std::abs(value); rest >= 10.0; rest /= 10.0) ++digits;
+  // More than any number has that is written.
+  constexpr int kEnough = 20;
+  for (double rest = std::abs(value); rest >= 10.0 && digits < kEnough; rest /= 10.0) ++digits;
   return digits;
 }
 

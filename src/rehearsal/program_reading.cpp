@@ -198,8 +198,11 @@ std::expected<LineFacts, TransformRefusal> ProgramReading::read(const LineText& 
   }
   if (line.words().empty()) return facts;
   constexpr double kFarthest = 1e6;
+  constexpr double kFastest = 1e9;
   for (const PlacedWord& word : line.words()) {
-    if (std::string_view{"XYZABCUVWIJKRPQ"}.contains(word.letter) && std::abs(word.value) > kFarthest) {
+    const bool is_rate = word.letter == 'F' || word.letter == 'S';
+    const bool is_measure = is_rate || std::string_view{"XYZABCUVWIJKRPQ"}.contains(word.letter);
+    if (is_measure && std::abs(word.value) > (is_rate ? kFastest : kFarthest)) {
       return refuse(number, "A number of this line is too large for any machine. Correct it first.");
     }
   }
