@@ -10,8 +10,9 @@
 namespace kerf::apps {
 
 /// The timeline of `program` on a machine like the one that told these capabilities, with its settings. Null when it
-/// would say nothing reliable: an unknown firmware, a program that does not run through by itself (a refused line, M0,
-/// an alarm), or one so long that the operator would wait for it. `speed` is how fast the machine's clock runs.
+/// would say nothing reliable: an unknown firmware, a program that does not run through (a refused line, an alarm), or
+/// one so long that the operator would wait for it. Nobody knows how long he takes at M0 or M6: they take no time here.
+/// `speed` is how fast the machine's clock runs.
 [[nodiscard]] std::shared_ptr<const job::Timeline> rehearse(const job::Program& program,
                                                             const machine::Capabilities& capabilities, double speed);
 

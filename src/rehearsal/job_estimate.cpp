@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <memory>
 #include <utility>
 
 #include "common/vocabulary/dialect.hpp"
@@ -28,14 +29,6 @@ constexpr std::array<double, 11> kFeedBins = {0, 100, 200, 500, 1000, 2000, 3000
 constexpr double kNoticeable_s = 0.1;
 /// The machine loses so much of the time of these lines at least.
 constexpr double kNoticeableShare = 0.02;
-
-/// The file's lines as Kerf would send them, each at its own place: what is not sent is a blank line.
-std::string as_sent(const job::Program& program, const vocabulary::Dialect& dialect) {
-  SentLines lines(program, dialect);
-  std::string text;
-  while (const auto line = lines.next()) (text += line->wire) += '\n';
-  return text;
-}
 
 /// Reads the program beside the machine: tool, operation and what the lines since the last motion asked for.
 class ReadingAlong {
@@ -157,8 +150,8 @@ class Ledger {
 JobEstimate estimate_job(const job::Program& program, const CaseMachine& machine, ProgramLink link) {
   const auto& dialect = machine.personality.dialect();
   Ledger ledger(program, dialect);
-  const ProgramRun run{.program = as_sent(program, dialect), .link = link, .operator_goes_on = true};
-  ProgramTracer tracer(run, machine);
+  const ProgramRun run{.program = {}, .link = link, .operator_goes_on = true};
+  ProgramTracer tracer(run, machine, std::make_unique<SentText>(SentLines(program, dialect)));
   std::vector<BlockTrace> ended;
   for (bool goes_on = true; goes_on;) {
     ended.clear();

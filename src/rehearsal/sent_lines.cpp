@@ -1,7 +1,5 @@
 #include "rehearsal/sent_lines.hpp"
 
-#include <utility>
-
 namespace kerf::rehearsal {
 
 job::ToolChanges tool_changes_on(const vocabulary::Dialect& dialect) {
@@ -34,6 +32,12 @@ std::optional<SentLine> SentLines::next() {
   ++next_number_;
   if (passage == job::Passage::Send) sent.wire = wire_;
   return sent;
+}
+
+bool SentText::read_on(std::string& lines) {
+  const auto line = lines_.next();
+  if (line) (lines += line->wire) += '\n';
+  return line.has_value();
 }
 
 }  // namespace kerf::rehearsal

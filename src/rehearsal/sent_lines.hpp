@@ -5,11 +5,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "common/vocabulary/dialect.hpp"
 #include "sender/job/program.hpp"
 #include "sender/job/program_flow.hpp"
 #include "sender/job/wire_form.hpp"
+#include "simulation/program_text.hpp"
 
 namespace kerf::rehearsal {
 
@@ -48,6 +50,16 @@ class SentLines {
   std::size_t offset_bytes_ = 0;
   std::uint32_t next_number_ = 1;
   std::string wire_;
+};
+
+/// The same for a virtual controller, each line at its own place: what is not sent is a blank line.
+class SentText final : public simulation::ProgramText {
+ public:
+  explicit SentText(SentLines lines) : lines_(std::move(lines)) {}
+  bool read_on(std::string& lines) override;
+
+ private:
+  SentLines lines_;
 };
 
 }  // namespace kerf::rehearsal

@@ -29,23 +29,12 @@ std::size_t window_of(vocabulary::Firmware firmware) {
   return firmware == vocabulary::Firmware::GrblHal ? kGrblHalWindow : kWindow;
 }
 
-/// The program as bytes with LF line ends, the last line ended too.
-std::string as_sent(std::string_view program) {
-  std::string bytes;
-  bytes.reserve(program.size() + 1);
-  for (std::size_t i = 0; i < program.size(); ++i) {
-    const bool is_crlf = program[i] == '\r' && i + 1 < program.size() && program[i + 1] == '\n';
-    if (!is_crlf) bytes += program[i];
-  }
-  if (!bytes.empty() && bytes.back() != '\n') bytes += '\n';
-  return bytes;
-}
-
 /// Decides when which byte of the program arrives.
 class Feeder {
  public:
-  Feeder(std::string bytes, ProgramLink link, std::size_t window)
-      : bytes_(std::move(bytes)), link_(link), window_(window) {
+  Feeder(std::unique_ptr<ProgramText> text, ProgramLink link, std::size_t window)
+      : text_(std::move(text)), link_(link), window_(window) {
+    read_on();
     find_next_line();
   }
 
@@ -54,6 +43,7 @@ class Feeder {
 
   /// What arrives now; `room` is what the receive buffer can take.
   std::string_view take(Instant now, std::size_t room) {
+    read_on();
     const std::size_t first = sent_;
     if (!link_.baud) {
       sent_ = std::min(bytes_.size(), sent_ + room);
@@ -71,6 +61,7 @@ class Feeder {
     if (lines_under_way_.empty()) return;
     under_way_ -= lines_under_way_.front();
     lines_under_way_.pop_front();
+    read_on();
     const bool was_waiting = sent_ == allowed_;
     find_next_line();
     if (was_waiting && sent_ < allowed_ && byte_at_ < now) {
@@ -81,9 +72,35 @@ class Feeder {
     }
   }
 
-  [[nodiscard]] bool is_done() const { return sent_ == bytes_.size(); }
+  /// Of the program; how many there are in all is known at its end.
+  [[nodiscard]] std::uint32_t lines_read() const { return lines_; }
+  [[nodiscard]] bool has_read_all() const { return text_ == nullptr; }
+  /// Counts the lines that are left, when they are not to be sent any more.
+  std::uint32_t count_rest() {
+    while (text_) {
+      bytes_.clear();
+      read_piece();
+    }
+    return lines_;
+  }
 
  private:
+  /// Keeps some bytes ready behind those that were sent.
+  void read_on() {
+    constexpr std::size_t kReady = 4096;
+    if (!text_ || bytes_.size() - sent_ >= kReady) return;
+    bytes_.erase(0, sent_);
+    allowed_ -= std::min(allowed_, sent_);
+    sent_ = 0;
+    while (text_ && bytes_.size() < 2 * kReady) read_piece();
+  }
+  void read_piece() {
+    const std::size_t before = bytes_.size();
+    if (!text_->read_on(bytes_)) text_.reset();
+    lines_ += static_cast<std::uint32_t>(
+        std::ranges::count(bytes_.begin() + static_cast<std::ptrdiff_t>(before), bytes_.end(), '\n'));
+  }
+
   /// A line may follow when all of it fits into the window.
   void find_next_line() {
     if (!link_.baud) return;
@@ -103,6 +120,9 @@ class Feeder {
     byte_at_ = line_began_ + Duration{bytes_on_line_ * kBitsPerByte * kNanosecondsPerSecond / *link_.baud};
   }
 
+  /// Null when all of it was read.
+  std::unique_ptr<ProgramText> text_;
+  std::uint32_t lines_ = 0;
   std::string bytes_;
   ProgramLink link_;
   std::size_t window_;
@@ -123,16 +143,14 @@ constexpr std::size_t kPiece = 1000;
 
 class ProgramTracer::Run {
  public:
-  Run(const ProgramRun& run, const CaseMachine& machine)
+  Run(const ProgramRun& run, const CaseMachine& machine, std::unique_ptr<ProgramText> text)
       : run_(run),
         controller_(machine.personality, machine.stored),
-        feeder_(as_sent(run.program), run.link, window_of(machine.personality.firmware)) {
+        feeder_(std::move(text), run.link, window_of(machine.personality.firmware)) {
     for (const auto& event : machine.workcell) controller_.submit(now_, event);
     if (machine.personality.full_buffer_drops_realtime) kept_free_ = kRoomForRealtime;
     switch_on(controller_, now_, machine.told);
     log_ = &controller_.keep_motion_log();
-    const std::string sent = as_sent(run.program);
-    trace_.lines = static_cast<std::uint32_t>(std::ranges::count(sent, '\n'));
     next_sample_ = run.sample_every ? Instant{} : kNever;
     feed();
   }
@@ -159,6 +177,7 @@ class ProgramTracer::Run {
   MotionTrace finish() {
     const Instant end = std::max(log_->last_end(), last_answer_);
     trace_.total_s = base::to_seconds(end - Instant{});
+    trace_.lines = feeder_.count_rest();
     if (run_.sample_every) {
       while (next_sample_ < end + *run_.sample_every) take_sample();
     }
@@ -175,7 +194,7 @@ class ProgramTracer::Run {
     return std::min({by_itself, feeder_.next_arrival(), next_injection()});
   }
 
-  [[nodiscard]] bool is_over() const { return trace_.lines_answered >= trace_.lines; }
+  [[nodiscard]] bool is_over() const { return feeder_.has_read_all() && trace_.lines_answered >= feeder_.lines_read(); }
 
   /// The operator presses Cycle Start, unless that did not help a moment ago.
   bool goes_on() {
@@ -276,7 +295,9 @@ class ProgramTracer::Run {
 };
 
 ProgramTracer::ProgramTracer(const ProgramRun& run, const CaseMachine& machine)
-    : run_(std::make_unique<Run>(run, machine)) {}
+    : ProgramTracer(run, machine, std::make_unique<HeldText>(run.program)) {}
+ProgramTracer::ProgramTracer(const ProgramRun& run, const CaseMachine& machine, std::unique_ptr<ProgramText> text)
+    : run_(std::make_unique<Run>(run, machine, std::move(text))) {}
 ProgramTracer::~ProgramTracer() = default;
 
 bool ProgramTracer::run_on(std::vector<BlockTrace>& ended) {

@@ -12,6 +12,7 @@
 #include "common/base/time.hpp"
 #include "common/vocabulary/axis.hpp"
 #include "simulation/case_runner.hpp"
+#include "simulation/program_text.hpp"
 
 namespace kerf::simulation {
 
@@ -85,6 +86,8 @@ class ProgramTracer {
  public:
   /// Both must outlive it.
   ProgramTracer(const ProgramRun& run, const CaseMachine& machine);
+  /// The same for a text that nobody holds as a whole; `run.program` means nothing then.
+  ProgramTracer(const ProgramRun& run, const CaseMachine& machine, std::unique_ptr<ProgramText> text);
   ~ProgramTracer();
   ProgramTracer(const ProgramTracer&) = delete;
   ProgramTracer& operator=(const ProgramTracer&) = delete;
