@@ -2,6 +2,7 @@
 
 #include "rehearsal/transform.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include <gmock/gmock.h>
@@ -58,7 +59,8 @@ void expect_mapped(const job::Program& program, const std::string& text, const A
   // Within arcs: as many chords, each where the map puts it. Both ends of the comparison are rounded to steps, and the
   // number of chords hangs on the last bit of the angle once in a while.
   if (map_of_plane(map, gcode::Plane::XY).factor != 1.0) return;
-  if (before.blocks.size() != after.blocks.size()) {
+  if (!std::ranges::equal(before.blocks, after.blocks, {}, &simulation::BlockTrace::line,
+                          &simulation::BlockTrace::line)) {
     const auto more = std::max(before.blocks.size(), after.blocks.size());
     // So do the pecks of a cycle, the last of which may be one bit deep: two blocks a hole.
     constexpr std::size_t kPecks = 20;
@@ -71,7 +73,12 @@ void expect_mapped(const job::Program& program, const std::string& text, const A
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double slack = 0.5 + 2 * kFloatSteps;
       for (const double part : map.linear.at(axis)) slack += 0.5 * std::abs(part);
-      RC_ASSERT(std::abs(after.blocks[at].end_steps.at(axis) - map.value(axis, was_mm) * kTestSteps) <= slack);
+      const double off = std::abs(after.blocks[at].end_steps.at(axis) - map.value(axis, was_mm) * kTestSteps);
+      if (off > slack) {
+        RC_LOG("block " + std::to_string(at) + " of line " + std::to_string(before.blocks[at].line) + " axis " +
+               std::to_string(axis) + "\n" + std::string{program.text()} + "---\n" + text);
+      }
+      RC_ASSERT(off <= slack);
     }
   }
 }
