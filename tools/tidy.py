@@ -66,11 +66,13 @@ MAY_INCLUDE: dict[str, list[str]] = {
     "simulation": COMMON + SENDER + ["firmware"],
     "io": COMMON + SENDER + ["firmware"],
     "rehearsal": COMMON + ["sender/machine", "sender/job", "firmware", "simulation"],
-    "apps": COMMON + SENDER + ["firmware", "simulation", "rehearsal", "io"],
+    "preparation": COMMON + SENDER + ["firmware", "simulation", "rehearsal", "io"],
+    "daemon": COMMON + SENDER + ["firmware", "simulation", "rehearsal", "io", "preparation"],
+    "apps": COMMON + SENDER + ["firmware", "simulation", "rehearsal", "io", "preparation", "daemon"],
 }
 SUBFOLDERS = {"common/vocabulary/dialects", "firmware/personalities", "io/web", "io/store", "io/notify"}
 TABLE_FOLDERS = ("src/common/vocabulary/dialects", "src/firmware/personalities")
-EDGES = ("src/io", "src/apps")
+EDGES = ("src/io", "src/preparation", "src/daemon", "src/apps")
 
 # Standard headers that bring a thread, a clock, a file, a stream or a suspended stack.
 IMPURE_HEADERS = {

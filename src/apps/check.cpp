@@ -12,15 +12,18 @@
 #include <fmt/ranges.h>
 
 #include "apps/case_machine.hpp"
-#include "apps/check_text.hpp"
 #include "apps/commands.hpp"
 #include "apps/inquiry.hpp"
 #include "apps/output.hpp"
 #include "common/base/text.hpp"
 #include "io/json.hpp"
 #include "io/program_file.hpp"
+#include "preparation/check_text.hpp"
 
 namespace kerf::apps {
+using preparation::check_json;
+using preparation::check_text;
+
 namespace {
 
 using rehearsal::CheckMachine;
@@ -82,6 +85,11 @@ ExitStatus check(const CheckOptions& options) {
     for (const std::string& line : check_text(result, options.file, machine->dialect->name)) put("{}\n", line);
   }
   return status_of(result);
+}
+
+ExitStatus status_of(const rehearsal::CheckResult& result) {
+  if (result.errors > 0) return ExitStatus::Refused;
+  return result.warnings > 0 ? ExitStatus::Warned : ExitStatus::Done;
 }
 
 }  // namespace kerf::apps

@@ -1,6 +1,10 @@
 #pragma once
 // How `kerf` ends. The numbers are part of the command line's interface: scripts test them.
 
+namespace kerf::rehearsal {
+struct CheckResult;
+}
+
 namespace kerf::apps {
 
 enum class ExitStatus {
@@ -12,5 +16,7 @@ enum class ExitStatus {
   Interrupted = 5,  ///< stopped by the operator, link lost, or a reset from outside
   Warned = 6,       ///< `kerf check`: nothing would be refused, but there are warnings
 };
+
+[[nodiscard]] ExitStatus status_of(const rehearsal::CheckResult& result);
 
 }  // namespace kerf::apps

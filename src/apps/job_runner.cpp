@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "apps/rehearsal.hpp"
 #include "io/power_warnings.hpp"
+#include "preparation/rehearsal.hpp"
 
 namespace kerf::apps {
 namespace {
@@ -151,15 +151,18 @@ void JobRunner::follow(const BeginJob& begin) {
   if (begin.job.program == nullptr) return fail("The rest of the program cannot be sent.", ExitStatus::Usage);
   session::StartJob job = begin.job;
   job.options = options_;
-  job.timeline = rehearse(*job.program, host_->session().capabilities(), clock_speed(url_));
+  job.timeline = preparation::rehearse(*job.program, host_->session().capabilities(), clock_speed(url_));
   host_->submit(job);
 }
 
 void JobRunner::follow(const NoJob& none) {
   is_preparing_ = false;
   view_.told(none.told);
-  if (none.status == ExitStatus::Done) return finish(none.status);
-  fail(none.sentence, none.status);
+  switch (none.reason) {
+    case NoJob::Reason::NotWished: return finish(ExitStatus::Done);
+    case NoJob::Reason::FaultsFound: return fail(none.sentence, ExitStatus::Refused);
+    case NoJob::Reason::Impossible: return fail(none.sentence, ExitStatus::Usage);
+  }
 }
 
 void JobRunner::answer(char key) {

@@ -6,14 +6,20 @@
 #include <string>
 
 #include "apps/exit_status.hpp"
-#include "apps/job_preparation.hpp"
 #include "apps/job_view.hpp"
 #include "apps/terminal.hpp"
 #include "io/event_loop.hpp"
 #include "io/session_host.hpp"
 #include "io/sleep_inhibitor.hpp"
+#include "preparation/job_preparation.hpp"
 
 namespace kerf::apps {
+
+using preparation::AskOperator;
+using preparation::BeginJob;
+using preparation::JobPreparation;
+using preparation::KeepWaiting;
+using preparation::NoJob;
 
 class JobRunner {
  public:

@@ -5,13 +5,15 @@
 #include <string_view>
 
 #include "apps/exit_status.hpp"
-#include "apps/job_preparation.hpp"
+#include "preparation/job_preparation.hpp"
 #include "sender/job/job_state.hpp"
 #include "sender/machine/capabilities.hpp"
 #include "sender/machine/snapshot.hpp"
 #include "sender/session/event.hpp"
 
 namespace kerf::apps {
+
+using preparation::Told;
 
 /// One way of showing. Sentences are complete; a view only decides where and how they appear.
 class JobView {

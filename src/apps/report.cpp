@@ -12,17 +12,18 @@
 #include <fmt/format.h>
 
 #include "apps/case_machine.hpp"
-#include "apps/check_text.hpp"
 #include "apps/commands.hpp"
 #include "apps/inquiry.hpp"
 #include "apps/output.hpp"
 #include "common/base/duration_text.hpp"
 #include "io/program_file.hpp"
 #include "io/wall_clock.hpp"
+#include "preparation/check_text.hpp"
 #include "rehearsal/plot.hpp"
 #include "simulation/machine_like.hpp"
 
 namespace kerf::apps {
+
 namespace {
 
 using rehearsal::PlotOptions;

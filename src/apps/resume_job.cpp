@@ -12,13 +12,17 @@
 #include "apps/commands.hpp"
 #include "apps/job_runner.hpp"
 #include "apps/job_view.hpp"
-#include "apps/resume_preparation.hpp"
 #include "apps/terminal.hpp"
 #include "io/journal_database.hpp"
 #include "io/journal_store.hpp"
 #include "io/program_file.hpp"
+#include "preparation/resume_preparation.hpp"
 
 namespace kerf::apps {
+using preparation::InterruptedWork;
+using preparation::prepare_resume;
+using preparation::ResumeWish;
+
 namespace {
 
 /// A job may continue another one, which may continue another one; a ring would be a broken journal.

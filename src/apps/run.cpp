@@ -5,12 +5,12 @@
 
 #include <unistd.h>
 
-#include "apps/checked_job.hpp"
 #include "apps/commands.hpp"
 #include "apps/job_runner.hpp"
 #include "apps/job_view.hpp"
 #include "apps/terminal.hpp"
 #include "io/program_file.hpp"
+#include "preparation/checked_job.hpp"
 
 namespace kerf::apps {
 ExitStatus run(const RunOptions& options) {
@@ -29,12 +29,13 @@ ExitStatus run(const RunOptions& options) {
   const bool can_ask = !options.json && is_terminal(STDIN_FILENO) && is_terminal(STDOUT_FILENO);
   std::error_code ignored;
   const session::JobOptions job = options.job.settled(can_ask);
-  JobRunner runner(loop, *url,
-                   prepare_checked_job({.program = file->program(),
+  JobRunner runner(
+      loop, *url,
+      preparation::prepare_checked_job({.program = file->program(),
                                         .origin = {.path = std::filesystem::absolute(options.file, ignored).string()},
                                         .options = job,
                                         .despite_errors = options.despite_errors}),
-                   job, *view, can_ask);
+      job, *view, can_ask);
   return runner.run(options.recording);
 }
 

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "apps/job_preparation.hpp"
 #include "io/program_file.hpp"
+#include "preparation/job_preparation.hpp"
 #include "sender/job/journal.hpp"
 #include "sender/job/resume_plan.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 
 /// An interrupted job, as its journal has it.
 struct InterruptedWork {
@@ -32,4 +32,4 @@ struct ResumeWish {
 
 [[nodiscard]] std::unique_ptr<JobPreparation> prepare_resume(ResumeWish wish);
 
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

@@ -3,11 +3,11 @@
 
 #include <memory>
 
-#include "apps/job_preparation.hpp"
+#include "preparation/job_preparation.hpp"
 #include "sender/job/program.hpp"
 #include "sender/session/job_options.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 
 struct CheckedJob {
   std::shared_ptr<const job::Program> program{};
@@ -21,4 +21,4 @@ struct CheckedJob {
 /// Reads the program as the machine will that was found, and tells what it finds; with errors there is no job.
 [[nodiscard]] std::unique_ptr<JobPreparation> prepare_checked_job(CheckedJob job);
 
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

@@ -1,4 +1,4 @@
-#include "apps/checked_job.hpp"
+#include "preparation/checked_job.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "apps/check_text.hpp"
+#include "preparation/check_text.hpp"
 #include "rehearsal/check.hpp"
 #include "sender/job/wire_form.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 namespace {
 
 using rehearsal::Checker;
@@ -73,7 +73,7 @@ class CheckedJobPreparation final : public JobPreparation {
                                          "the program, or start it with --despite-errors.",
                                          job_.program->name(), result.errors, result.errors == 1 ? "" : "s",
                                          first_error(result)),
-                 .status = ExitStatus::Refused};
+                 .reason = NoJob::Reason::FaultsFound};
   }
 
   /// Now and then, where it takes long.
@@ -100,4 +100,4 @@ std::unique_ptr<JobPreparation> prepare_checked_job(CheckedJob job) {
   return std::make_unique<CheckedJobPreparation>(std::move(job));
 }
 
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

@@ -1,10 +1,10 @@
-#include "apps/homing_wait.hpp"
+#include "preparation/homing_wait.hpp"
 
 #include <chrono>
 
 #include <gtest/gtest.h>
 
-namespace kerf::apps {
+namespace kerf::preparation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -73,4 +73,4 @@ TEST(HomingWait, NeverWaitsForEver) {
 }
 
 }  // namespace
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

@@ -8,7 +8,7 @@
 #include "sender/machine/snapshot.hpp"
 #include "sender/session/event.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 
 /// One homing, from the command to the machine that says it is homed.
 class HomingWait {
@@ -41,4 +41,4 @@ class HomingWait {
   Instant idle_since_ = kNever;
 };
 
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

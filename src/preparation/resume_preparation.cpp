@@ -1,16 +1,16 @@
-#include "apps/resume_preparation.hpp"
+#include "preparation/resume_preparation.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
-#include "apps/homing_wait.hpp"
 #include "io/json.hpp"
+#include "preparation/homing_wait.hpp"
 #include "sender/job/resume_facts.hpp"
 #include "sender/machine/explanation_evidence.hpp"
 #include "simulation/resume_rehearsal.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -138,7 +138,7 @@ class ResumePreparation final : public JobPreparation {
   }
 
   NextInPreparation give_up(Told told, std::string sentence) const {
-    return NoJob{.told = std::move(told), .sentence = std::move(sentence), .status = ExitStatus::Usage};
+    return NoJob{.told = std::move(told), .sentence = std::move(sentence)};
   }
 
   [[nodiscard]] job::ResumeFacts facts(Instant at, const session::Session& session, bool will_be_homed) const {
@@ -165,7 +165,7 @@ class ResumePreparation final : public JobPreparation {
     told.lines.push_back(rehearsal->sentence);
     if (wish_.dry_run) {
       told.lines.emplace_back("A dry run: nothing was sent.");
-      return NoJob{.told = std::move(told), .status = ExitStatus::Done};
+      return NoJob{.told = std::move(told), .reason = NoJob::Reason::NotWished};
     }
     if (!may_run_ && !wish_.says_yes) {
       asked_ = Question::Run;
@@ -233,4 +233,4 @@ std::unique_ptr<JobPreparation> prepare_resume(ResumeWish wish) {
   return std::make_unique<ResumePreparation>(std::move(wish));
 }
 
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

@@ -7,7 +7,7 @@
 #include "sender/job/timeline.hpp"
 #include "sender/machine/capabilities.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 
 /// The timeline of `program` on a machine like the one that told these capabilities, with its settings. Null when it
 /// would say nothing reliable: an unknown firmware, a program that does not run through (a refused line, an alarm), or
@@ -16,4 +16,4 @@ namespace kerf::apps {
 [[nodiscard]] std::shared_ptr<const job::Timeline> rehearse(const job::Program& program,
                                                             const machine::Capabilities& capabilities, double speed);
 
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

@@ -1,4 +1,4 @@
-#include "apps/rehearsal.hpp"
+#include "preparation/rehearsal.hpp"
 
 #include <algorithm>
 #include <string>
@@ -10,7 +10,7 @@
 #include "simulation/machine_like.hpp"
 #include "simulation/motion_trace.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 namespace {
 
 /// Some 50,000 lines, which take less than a second; twenty times that on a small computer.
@@ -47,4 +47,4 @@ std::shared_ptr<const job::Timeline> rehearse(const job::Program& program, const
   return timeline;
 }
 
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

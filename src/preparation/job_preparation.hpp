@@ -5,12 +5,11 @@
 #include <variant>
 #include <vector>
 
-#include "apps/exit_status.hpp"
 #include "io/json.hpp"
 #include "sender/session/command.hpp"
 #include "sender/session/session.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 
 /// Nothing to do before the machine tells more, or a piece of work is done of many: then it asks again at once.
 struct KeepWaiting {
@@ -32,11 +31,16 @@ struct BeginJob {
   Told told{};
   session::StartJob job;
 };
-/// There will be no job; the exit status says whether that is a failure.
+/// There will be no job.
 struct NoJob {
+  enum class Reason {
+    Impossible,   ///< the sentence says why
+    FaultsFound,  ///< the check found lines that the controller would refuse, or worse
+    NotWished,    ///< all is well, and nothing but the preparation was asked for
+  };
   Told told{};
   std::string sentence{};
-  ExitStatus status = ExitStatus::Usage;
+  Reason reason = Reason::Impossible;
 };
 using NextInPreparation = std::variant<KeepWaiting, session::Command, AskOperator, BeginJob, NoJob>;
 
@@ -55,4 +59,4 @@ class JobPreparation {
   virtual void agree() = 0;
 };
 
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

@@ -5,11 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/exit_status.hpp"
 #include "io/json.hpp"
 #include "rehearsal/check.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 
 /// All of it, the worst first; `machine` is the name of the firmware.
 [[nodiscard]] std::vector<std::string> check_text(const rehearsal::CheckResult& result, std::string_view file,
@@ -20,6 +19,4 @@ namespace kerf::apps {
 
 [[nodiscard]] io::Json check_json(const rehearsal::CheckResult& result, std::string_view machine);
 
-[[nodiscard]] ExitStatus status_of(const rehearsal::CheckResult& result);
-
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

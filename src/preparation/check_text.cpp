@@ -1,4 +1,4 @@
-#include "apps/check_text.hpp"
+#include "preparation/check_text.hpp"
 
 #include <algorithm>
 #include <ranges>
@@ -8,7 +8,7 @@
 
 #include "sender/machine/explanation_evidence.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 namespace {
 
 using rehearsal::CheckResult;
@@ -137,9 +137,4 @@ io::Json check_json(const CheckResult& result, std::string_view machine) {
   return json;
 }
 
-ExitStatus status_of(const CheckResult& result) {
-  if (result.errors > 0) return ExitStatus::Refused;
-  return result.warnings > 0 ? ExitStatus::Warned : ExitStatus::Done;
-}
-
-}  // namespace kerf::apps
+}  // namespace kerf::preparation

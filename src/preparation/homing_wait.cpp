@@ -1,4 +1,4 @@
-#include "apps/homing_wait.hpp"
+#include "preparation/homing_wait.hpp"
 
 #include <chrono>
 #include <utility>
@@ -6,7 +6,7 @@
 
 #include "common/base/overloaded.hpp"
 
-namespace kerf::apps {
+namespace kerf::preparation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -70,4 +70,4 @@ HomingWait::Verdict HomingWait::look(Instant at, const machine::Snapshot& now) {
                                  " homed.");
 }
 
-}  // namespace kerf::apps
+}  // namespace kerf::preparation
