@@ -3,6 +3,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 
+#include "io/listening.hpp"
 #include "io/server.hpp"
 #include "io/stream_link.hpp"
 #include "io/tcp_options.hpp"
@@ -17,14 +18,6 @@ namespace {
 
 std::string name_of(const tcp::endpoint& endpoint) {
   return to_string(TcpAddress{.host = endpoint.address().to_string(), .port = endpoint.port()});
-}
-
-ListenError error_of(boost::system::error_code fault) {
-  ListenFault kind = ListenFault::Failed;
-  if (fault == asio::error::address_in_use) kind = ListenFault::AddressInUse;
-  if (fault == asio::error::access_denied) kind = ListenFault::NoPermission;
-  if (fault == boost::system::errc::address_not_available) kind = ListenFault::AddressUnknown;
-  return {.fault = kind, .system_text = fault.message()};
 }
 
 }  // namespace
@@ -98,24 +91,11 @@ TcpServer::~TcpServer() {
 }
 
 std::expected<ServeAddress, ListenError> TcpServer::listen(const ServeAddress& serve) {
-  const TcpAddress& address = serve.tcp;
-  boost::system::error_code fault;
-  tcp::resolver resolver(state_->acceptor.get_executor());
-  const auto found = resolver.resolve(address.host, std::to_string(address.port), tcp::resolver::passive, fault);
-  if (fault || found.empty()) {
-    return std::unexpected(ListenError{.fault = ListenFault::AddressUnknown, .system_text = fault.message()});
-  }
-  const tcp::endpoint endpoint = found.begin()->endpoint();
-  tcp::acceptor& acceptor = state_->acceptor;
-  acceptor.open(endpoint.protocol(), fault);
-  if (!fault) acceptor.set_option(tcp::acceptor::reuse_address(true), fault);
-  if (!fault) acceptor.bind(endpoint, fault);
-  if (!fault) acceptor.listen(asio::socket_base::max_listen_connections, fault);
-  if (fault) return std::unexpected(error_of(fault));
+  const auto port = listen_at(state_->acceptor, serve.tcp);
+  if (!port) return std::unexpected(port.error());
   state_->is_websocket = serve.websocket;
   state_->accept();
-  const std::uint16_t port = acceptor.local_endpoint(fault).port();
-  return ServeAddress{.tcp = {.host = address.host, .port = port}, .websocket = serve.websocket};
+  return ServeAddress{.tcp = {.host = serve.tcp.host, .port = *port}, .websocket = serve.websocket};
 }
 
 void TcpServer::write(std::string_view bytes) {

@@ -103,6 +103,11 @@ class Session {
   [[nodiscard]] LinkHealth link_health(Instant now) const;
   /// Why the machine is in alarm; empty while it is not.
   [[nodiscard]] std::optional<machine::Explanation> alarm_explanation() const;
+  /// Why this line by hand, or a job, would be refused right now; nothing: it would be obeyed.
+  [[nodiscard]] std::optional<Refused> why_no_line(Instant now, std::string_view text) const;
+  [[nodiscard]] std::optional<Refused> why_no_job(Instant now) const;
+  /// ResumeJob would be obeyed.
+  [[nodiscard]] bool can_resume() const;
   /// The job under way, or the last one; empty before the first, and while the next one waits for its beginning.
   [[nodiscard]] const std::optional<job::JobState>& job() const { return job_state_; }
   /// What was not as at the last connection (RecallSettings), for the rest of this one.
@@ -152,9 +157,7 @@ class Session {
   void obey(Instant now, const RecallSettings& command);
   void obey(Instant now, const RecallWords& command);
   void obey(Instant now, const TakeControl& command);
-  [[nodiscard]] std::optional<Refused> why_no_line(Instant now, std::string_view text) const;
   [[nodiscard]] std::optional<std::string> why_text_is_eaten(std::string_view text) const;
-  [[nodiscard]] std::optional<Refused> why_no_job(Instant now) const;
   [[nodiscard]] std::optional<Refused> why_nothing(Instant now) const;
   [[nodiscard]] std::size_t longest_line_taken() const;
   void refuse(Refused reason, std::string detail = {});

@@ -49,14 +49,14 @@ void Session::obey(Instant now, const HoldJob&) {
     send_byte(Realtime::FeedHold);
 }
 
+bool Session::can_resume() const {
+  if (snapshot().pendant_in_control || stop_.is_under_way()) return false;
+  return has_job() ? job_->can_resume() : machine::can_resume(snapshot());
+}
+
 void Session::obey(Instant now, const ResumeJob&) {
-  if (snapshot().pendant_in_control) {
-    refuse(Refused::PendantInControl);
-    return;
-  }
-  const bool can_resume = has_job() ? job_->can_resume() : machine::can_resume(snapshot());
-  if (stop_.is_under_way() || !can_resume) {
-    refuse(Refused::NotAtRest);
+  if (!can_resume()) {
+    refuse(snapshot().pendant_in_control ? Refused::PendantInControl : Refused::NotAtRest);
     return;
   }
   if (is_at_tool_change() && tool_work_.has_worked()) {
