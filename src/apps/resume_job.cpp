@@ -16,17 +16,14 @@
 #include "io/journal_database.hpp"
 #include "io/journal_store.hpp"
 #include "io/program_file.hpp"
+#include "preparation/interrupted_jobs.hpp"
 #include "preparation/resume_preparation.hpp"
 
 namespace kerf::apps {
-using preparation::InterruptedWork;
 using preparation::prepare_resume;
 using preparation::ResumeWish;
 
 namespace {
-
-/// A job may continue another one, which may continue another one; a ring would be a broken journal.
-constexpr int kMostContinued = 1000;
 
 template <typename Value>
 using Found = std::expected<Value, std::string>;
@@ -53,70 +50,6 @@ Found<io::ProgramFile> load(const std::string& path, const ResumeChoices& choice
                                        path, lines, *choices.from_line)};
   }
   return *std::move(file);
-}
-
-bool is_interrupted(const io::JournaledJob& job) {
-  return !job.is_running && !job.history.begun.hash.empty() && job.history.outcome() != job::JobOutcome::Complete;
-}
-
-std::unexpected<std::string> unreadable(const io::JournalError& error) {
-  return std::unexpected{"The journal of jobs cannot be read: " + error.sentence + "."};
-}
-
-/// The job that continues job `number`; empty if none does.
-std::optional<std::int64_t> continued_by(const std::vector<io::JournaledJob>& jobs, std::int64_t number) {
-  // Newest first.
-  const auto next = std::ranges::find_if(jobs, [number](const io::JournaledJob& job) {
-    return job.history.begun.origin.continues == number && !job.history.begun.hash.empty();
-  });
-  return next == jobs.end() ? std::nullopt : std::optional{next->number};
-}
-
-/// Why this job cannot be resumed; empty if it can.
-std::string why_not(const io::JournaledJob& job, const std::vector<io::JournaledJob>& jobs) {
-  if (job.is_running) {
-    return fmt::format("Job {} is still running on {}: another Kerf has it. Stop it there first.", job.number,
-                       job.machine);
-  }
-  if (const auto next = continued_by(jobs, job.number)) {
-    return fmt::format("Job {} was gone on with as job {}: kerf resume {}.", job.number, *next, *next);
-  }
-  if (!is_interrupted(job)) {
-    return fmt::format("Job {} ({}) ran to its end: there is nothing to resume. kerf run cuts it again.", job.number,
-                       job.history.begun.program);
-  }
-  return {};
-}
-
-Found<io::JournaledJob> find_job(const io::JournalDatabase& journal, std::optional<std::int64_t> number) {
-  auto jobs = journal.jobs();
-  if (!jobs) return unreadable(jobs.error());
-  // Newest first. Without a number the newest counts: one behind a complete job is history.
-  const auto found = std::ranges::find_if(*jobs, [number](const io::JournaledJob& job) {
-    return number ? job.number == *number : !job.is_running && !job.history.begun.hash.empty();
-  });
-  if (found == jobs->end()) {
-    return std::unexpected{
-        number ? fmt::format("There is no job {}: kerf resume --list shows those that can be resumed.", *number)
-               : std::string{"No job was interrupted: there is nothing to resume."}};
-  }
-  const std::string why = why_not(*found, *jobs);
-  if (why.empty()) return std::move(*found);
-  return std::unexpected{number ? why : why + " To resume an older one, name it (kerf resume --list)."};
-}
-
-/// The machine before the first line of the file: that of the first job of the chain.
-Found<job::MachineAtStart> start_of(const io::JournalDatabase& journal, const job::JobHistory& history) {
-  job::JobBegun begun = history.begun;
-  for (int i = 0; begun.origin.continues && i < kMostContinued; ++i) {
-    auto before = journal.job(*begun.origin.continues);
-    if (!before || !*before) {
-      return std::unexpected{"Job " + std::to_string(*begun.origin.continues) +
-                             ", which this one continues, is not in the journal any more."};
-    }
-    begun = (*before)->history.begun;
-  }
-  return begun.machine;
 }
 
 /// What is the same for both commands.
@@ -162,7 +95,7 @@ ExitStatus resume_job(const ResumeOptions& options) {
   }
   const auto journal = io::JournalDatabase::open_to_read(path);
   if (!journal) return refuse("The journal of jobs cannot be read: " + journal.error().sentence + ".");
-  auto found = find_job(*journal, options.job);
+  auto found = preparation::find_interrupted_work(*journal, options.job);
   if (!found) return refuse(found.error());
   const std::string file = options.file.empty() ? found->history.begun.origin.path : options.file;
   if (file.empty()) {
@@ -179,14 +112,10 @@ ExitStatus resume_job(const ResumeOptions& options) {
         "--file. To cut the new one from some line on: kerf run FILE --from-line N.",
         file, found->number));
   }
-  auto start = start_of(*journal, found->history);
-  if (!start) return refuse(start.error());
   const std::string machine = options.machine.empty() ? found->machine : options.machine;
   ResumeWish wish{.file = *std::move(program),
                   .path = absolute(file),
-                  .work = InterruptedWork{.number = found->number,
-                                          .history = std::move(found->history),
-                                          .file_start = *std::move(start)},
+                  .work = *std::move(found),
                   .choice = choice_of(options.choices),
                   .dry_run = options.choices.dry_run,
                   .says_yes = options.choices.yes};

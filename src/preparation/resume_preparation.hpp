@@ -15,6 +15,8 @@ namespace kerf::preparation {
 /// An interrupted job, as its journal has it.
 struct InterruptedWork {
   std::int64_t number = 0;
+  /// Its address, as it was given.
+  std::string machine{};
   job::JobHistory history;
   /// Of the first of the jobs that it continues.
   job::MachineAtStart file_start;
