@@ -1,6 +1,6 @@
 #pragma once
-// JSON as described values, for what a client sends: strict, because a misspelt member of a command to a machine must not
-// be passed over. The counterpart of json.hpp.
+// JSON as described values, for what a client sends: strict, because a misspelt member of a command to a machine must
+// not be passed over. The counterpart of json.hpp.
 //
 // A struct is an object; members that are missing keep their defaults, unknown ones are a fault. An optional may be
 // null. Numbers must be finite and fit.
@@ -38,14 +38,12 @@ using JsonRead = std::expected<void, JsonFault>;
   into = json.get<bool>();
   return {};
 }
-[[nodiscard]] inline JsonRead read_json(const Json& json, const std::string& where,
-                                                              std::string& into) {
+[[nodiscard]] inline JsonRead read_json(const Json& json, const std::string& where, std::string& into) {
   if (!json.is_string()) return json_fault(where, "must be a text");
   into = json.get<std::string>();
   return {};
 }
-[[nodiscard]] inline JsonRead read_json(const Json& json, const std::string& where,
-                                                              double& into) {
+[[nodiscard]] inline JsonRead read_json(const Json& json, const std::string& where, double& into) {
   if (!json.is_number() || !std::isfinite(json.get<double>())) return json_fault(where, "must be a number");
   into = json.get<double>();
   return {};
@@ -54,7 +52,8 @@ template <typename T>
   requires std::is_integral_v<T>
 [[nodiscard]] JsonRead read_json(const Json& json, const std::string& where, T& into) {
   if (!json.is_number_integer()) return json_fault(where, "must be a whole number");
-  const bool is_large = json.is_number_unsigned() && json.get<std::uint64_t>() > std::numeric_limits<std::int64_t>::max();
+  const bool is_large =
+      json.is_number_unsigned() && json.get<std::uint64_t>() > std::numeric_limits<std::int64_t>::max();
   const std::int64_t value = json.get<std::int64_t>();
   if (is_large || !std::in_range<T>(value)) return json_fault(where, "is out of range");
   into = static_cast<T>(value);
@@ -75,14 +74,11 @@ template <DescribedEnum T>
 }
 
 template <typename T>
-[[nodiscard]] JsonRead read_json(const Json& json, const std::string& where,
-                                                       std::vector<T>& into);
+[[nodiscard]] JsonRead read_json(const Json& json, const std::string& where, std::vector<T>& into);
 template <typename T>
-[[nodiscard]] JsonRead read_json(const Json& json, const std::string& where,
-                                                       std::map<std::string, T>& into);
+[[nodiscard]] JsonRead read_json(const Json& json, const std::string& where, std::map<std::string, T>& into);
 template <typename T>
-[[nodiscard]] JsonRead read_json(const Json& json, const std::string& where,
-                                                       std::optional<T>& into);
+[[nodiscard]] JsonRead read_json(const Json& json, const std::string& where, std::optional<T>& into);
 
 template <DescribedStruct T>
 [[nodiscard]] JsonRead read_json(const Json& json, const std::string& where, T& into) {

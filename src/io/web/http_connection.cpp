@@ -49,8 +49,9 @@ HttpReply refusal(int status, std::string_view code, std::string_view sentence) 
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
-  std::ranges::transform(lower, lower.begin(),
-                         [](char letter) { return static_cast<char>(std::tolower(static_cast<unsigned char>(letter))); });
+  std::ranges::transform(lower, lower.begin(), [](char letter) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  });
   return lower;
 }
 
@@ -127,8 +128,7 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
     if (auto* reply = std::get_if<HttpReply>(&how)) return refuse(std::move(*reply));
     http::request<http::empty_body> head{http::request_header<>(parser_->get().base())};
     stream_.expires_never();
-    around_->upgraded(
-        open_channel(stream_.release_socket(), std::move(head), std::move(std::get<ChannelOpener>(how))));
+    around_->upgraded(open_channel(stream_.release_socket(), std::move(head), std::move(std::get<ChannelOpener>(how))));
   }
 
   void read_body() {
@@ -170,9 +170,7 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   void refuse_length() {
     refuse(413, "TooLong", sink_ ? "A program may have 2 GB." : "What is sent here may have 1 MB.");
   }
-  void refuse(int status, std::string_view code, std::string_view sentence) {
-    refuse(refusal(status, code, sentence));
-  }
+  void refuse(int status, std::string_view code, std::string_view sentence) { refuse(refusal(status, code, sentence)); }
   /// The rest of the request is not read, so the connection ends behind it.
   void refuse(HttpReply reply) { this->reply(std::move(reply), false); }
 
@@ -192,9 +190,8 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
     response_->content_length(body.size());
     if (!is_head()) response_->body() = {body.data(), body.size()};
     stream_.expires_after(kPieceLimit);
-    http::async_write(stream_, *response_, [self = shared_from_this()](error_code fault, std::size_t) {
-      self->on_replied(fault);
-    });
+    http::async_write(stream_, *response_,
+                      [self = shared_from_this()](error_code fault, std::size_t) { self->on_replied(fault); });
   }
 
   template <typename Body>
@@ -233,9 +230,8 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   void write_piece(const std::shared_ptr<BodySource>& source, std::optional<std::string> piece) {
     stream_.expires_after(kPieceLimit);
     if (!piece) {
-      asio::async_write(stream_, http::make_chunk_last(), [self = shared_from_this()](error_code fault, std::size_t) {
-        self->on_replied(fault);
-      });
+      asio::async_write(stream_, http::make_chunk_last(),
+                        [self = shared_from_this()](error_code fault, std::size_t) { self->on_replied(fault); });
       return;
     }
     outgoing_ = *std::move(piece);
