@@ -33,6 +33,9 @@ concept DescribedStruct = boost::describe::has_describe_members<T>::value && !st
 template <typename T>
 concept DescribedEnum = std::is_enum_v<T> && boost::describe::has_describe_enumerators<T>::value;
 
+/// Those of bases come first.
+inline constexpr auto kShownMembers = boost::describe::mod_public | boost::describe::mod_inherited;
+
 [[nodiscard]] inline Json to_json(vocabulary::MachineState state) {
   return std::string(name_of(state));
 }
@@ -66,7 +69,7 @@ template <typename... T>
 template <DescribedStruct T>
 [[nodiscard]] Json to_json(const T& value) {
   Json object = Json::object();
-  using Members = boost::describe::describe_members<T, boost::describe::mod_public>;
+  using Members = boost::describe::describe_members<T, kShownMembers>;
   boost::mp11::mp_for_each<Members>([&](auto member) {
     Json json = to_json(value.*member.pointer);
     if (!json.is_null()) object[member.name] = std::move(json);

@@ -86,7 +86,7 @@ template <DescribedStruct T>
   const std::string prefix = where.empty() ? "" : where + ".";
   JsonRead result;
   std::size_t known = 0;
-  using Members = boost::describe::describe_members<T, boost::describe::mod_public>;
+  using Members = boost::describe::describe_members<T, kShownMembers>;
   boost::mp11::mp_for_each<Members>([&](auto member) {
     const auto found = json.find(member.name);
     if (!result || found == json.end()) return;

@@ -110,7 +110,7 @@ void SchemaBook::define_struct(const std::string& name) {
   definitions_[name] = Json::object();  // one that holds itself ends here
   Json properties = Json::object();
   Json required = Json::array();
-  boost::mp11::mp_for_each<boost::describe::describe_members<T, boost::describe::mod_public>>([&](auto member) {
+  boost::mp11::mp_for_each<boost::describe::describe_members<T, kShownMembers>>([&](auto member) {
     using Member = std::remove_cvref_t<decltype(std::declval<T>().*member.pointer)>;
     properties[member.name] = of<Member>();
     if (!kIsOptional<Member>) required.push_back(member.name);
