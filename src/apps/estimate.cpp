@@ -17,27 +17,20 @@
 #include "apps/progress_text.hpp"
 #include "io/json.hpp"
 #include "io/program_file.hpp"
+#include "preparation/estimate_grades.hpp"
 #include "rehearsal/job_estimate.hpp"
 #include "simulation/machine_like.hpp"
 
 namespace kerf::apps {
 namespace {
 
-using io::Json;
 using rehearsal::JobEstimate;
+using preparation::Grades;
 using rehearsal::LostTime;
 using rehearsal::PartEstimate;
 using simulation::CaseMachine;
 
 constexpr std::size_t kMostShown = 12;
-
-/// What is true of the machine, and of the link to it.
-struct Grades {
-  JobEstimate planner;
-  /// Only where a link was named.
-  std::optional<JobEstimate> world{};
-  std::vector<LostTime> losses{};
-};
 
 std::optional<CaseMachine> machine_of(const EstimateOptions& options) {
   if (options.machine.empty()) return load_case_machine(options.virtual_machine);
@@ -51,53 +44,6 @@ std::optional<CaseMachine> machine_of(const EstimateOptions& options) {
     }
   });
   return status == ExitStatus::Done ? machine : std::nullopt;
-}
-
-Grades grades_of(const job::Program& program, const CaseMachine& machine, simulation::ProgramLink link) {
-  Grades grades{.planner = rehearsal::estimate_job(program, machine)};
-  if (link.baud) {
-    grades.world = rehearsal::estimate_job(program, machine, link);
-    grades.losses = rehearsal::lost_on_the_link(grades.planner, *grades.world);
-  }
-  return grades;
-}
-
-/// Microseconds and micrometres are more than anybody needs.
-double rounded(double value) {
-  constexpr double kMillion = 1e6;
-  return std::round(value * kMillion) / kMillion;
-}
-
-Json refused_json(const JobEstimate& estimate) {
-  Json refused = Json::array();
-  for (const auto& error : estimate.errors) refused.push_back({{"line", error.line}, {"code", error.code}});
-  return refused;
-}
-
-Json as_json(const Grades& grades) {
-  const JobEstimate& planner = grades.planner;
-  Json json = Json::object();
-  json["total_s"] = rounded(planner.total_s);
-  json["grade"] = "planner";
-  if (grades.world) {
-    Json world = Json::object();
-    world["total_s"] = rounded(grades.world->total_s);
-    world["lost"] = io::to_json(grades.losses);
-    json["world"] = std::move(world);
-  }
-  json["use"] = io::to_json(planner.use);
-  json["cutting_mm"] = rounded(planner.cutting_mm);
-  json["rapid_mm"] = rounded(planner.rapid_mm);
-  json["tools"] = io::to_json(planner.tools);
-  json["operations"] = io::to_json(planner.operations);
-  json["feeds"] = io::to_json(planner.feeds);
-  json["stops"] = planner.stops;
-  json["refused"] = refused_json(planner);
-  json["alarms"] = planner.alarms;
-  json["blocks"] = planner.blocks;
-  json["lines"] = planner.lines;
-  json["lines_answered"] = planner.lines_answered;
-  return json;
 }
 
 std::string metres(double mm) {
@@ -203,9 +149,9 @@ ExitStatus estimate(const EstimateOptions& options) {
   const auto machine = machine_of(options);
   if (!machine) return options.machine.empty() ? ExitStatus::Usage : ExitStatus::NoConnection;
   const job::Program& program = *file->program();
-  const Grades grades = grades_of(program, *machine, *link);
+  const Grades grades = preparation::grades_of(program, *machine, *link);
   if (options.json) {
-    put("{}\n", io::print(as_json(grades)));
+    put("{}\n", io::print(preparation::estimate_json(grades)));
   } else {
     tell(grades, options, program);
   }

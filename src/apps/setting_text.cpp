@@ -8,8 +8,11 @@
 
 #include "apps/output.hpp"
 #include "common/base/text.hpp"
+#include "preparation/settings_json.hpp"
 
 namespace kerf::apps {
+using preparation::shown_value;
+
 namespace {
 
 using machine::Capabilities;
@@ -35,12 +38,6 @@ std::string group_path(const Capabilities& machine, int id) {
     id = group->parent;
   }
   return path.empty() ? "Other" : path;
-}
-
-std::string shown_value(const SettingFact& setting) {
-  if (!setting.value) return "(not told)";
-  if (machine::is_password(setting)) return setting.value->empty() ? "" : std::string{machine::kStars};
-  return *setting.value;
 }
 
 void print_help(const SettingFact& setting) {
@@ -98,23 +95,6 @@ void print_setting(const Capabilities& machine, const SettingFact& setting) {
   put("      {}; takes {}\n", group_path(machine, setting.group_id), machine::explain_range(setting, rules));
   if (setting.reboot_required) put("      Acts after the controller was switched off and on.\n");
   print_help(setting);
-}
-
-io::Json settings_json(const Capabilities& machine, const std::vector<SettingFact>& settings) {
-  const auto rules = machine::setting_rules_of(machine);
-  io::Json list = io::Json::array();
-  for (const SettingFact& setting : settings) {
-    SettingFact shown = setting;
-    if (shown.value) shown.value = shown_value(setting);
-    io::Json row = io::to_json(shown);
-    row["meaning"] = machine::explain_value(setting, setting.value.value_or(""), rules);
-    row["range"] = machine::explain_range(setting, rules);
-    list.push_back(std::move(row));
-  }
-  io::Json object = io::Json::object();
-  object["settings"] = std::move(list);
-  object["groups"] = io::to_json(machine.setting_groups);
-  return object;
 }
 
 }  // namespace kerf::apps

@@ -1,10 +1,9 @@
 #pragma once
-// Settings for people, and as JSON.
+// Settings for people.
 
 #include <string_view>
 #include <vector>
 
-#include "io/json.hpp"
 #include "sender/machine/setting_value.hpp"
 
 namespace kerf::apps {
@@ -18,9 +17,5 @@ void print_settings(const machine::Capabilities& machine, std::vector<machine::S
 
 /// Everything about one.
 void print_setting(const machine::Capabilities& machine, const machine::SettingFact& setting);
-
-/// {"settings":[…],"groups":[…]}: each setting with its `meaning` and `range` in words. No passwords.
-[[nodiscard]] io::Json settings_json(const machine::Capabilities& machine,
-                                     const std::vector<machine::SettingFact>& settings);
 
 }  // namespace kerf::apps

@@ -16,6 +16,7 @@
 #include "common/base/text.hpp"
 #include "io/json.hpp"
 #include "io/settings_archive.hpp"
+#include "preparation/settings_json.hpp"
 #include "sender/machine/settings_text.hpp"
 #include "sender/machine/startup_line.hpp"
 
@@ -124,7 +125,7 @@ class List : public SettingsErrand {
       return ExitStatus::Usage;
     }
     if (options().json) {
-      put("{}\n", io::print(settings_json(place.machine, chosen), 2));
+      put("{}\n", io::print(preparation::settings_json(place.machine, chosen), 2));
       return ExitStatus::Done;
     }
     print_settings(place.machine, std::move(chosen), options().verbose);
@@ -149,7 +150,7 @@ class Get : public SettingsErrand {
       chosen.push_back(*setting);
     }
     if (options().json) {
-      put("{}\n", io::print(settings_json(place.machine, chosen), 2));
+      put("{}\n", io::print(preparation::settings_json(place.machine, chosen), 2));
     } else {
       for (const SettingFact& setting : chosen) print_setting(place.machine, setting);
     }
