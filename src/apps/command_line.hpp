@@ -44,6 +44,8 @@ void add_resume(CLI::App& kerf, Chosen& chosen);
 void add_audit(CLI::App& kerf, Chosen& chosen);
 /// `kerf transform`.
 void add_transform(CLI::App& kerf, Chosen& chosen);
+/// `kerf serve`.
+void add_serve(CLI::App& kerf, Chosen& chosen);
 /// `kerf virtual`.
 void add_virtual(CLI::App& kerf, Chosen& chosen);
 

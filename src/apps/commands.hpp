@@ -81,6 +81,16 @@ struct AuditOptions {
 };
 [[nodiscard]] ExitStatus audit(const AuditOptions& options);
 
+/// `kerf serve`.
+struct ServeOptions {
+  std::string listen = "127.0.0.1:8080";
+  std::vector<std::string> machines{};
+  std::string program{};
+  std::string state_folder{};  ///< empty: the user's own
+  io::RecordingOptions recording{};
+};
+[[nodiscard]] ExitStatus serve(const ServeOptions& options);
+
 struct VirtualOptions {
   std::string personality = "grblhal";
   std::vector<std::string> listen;  ///< one for all machines, or one each

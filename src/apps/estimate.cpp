@@ -24,8 +24,8 @@
 namespace kerf::apps {
 namespace {
 
-using rehearsal::JobEstimate;
 using preparation::Grades;
+using rehearsal::JobEstimate;
 using rehearsal::LostTime;
 using rehearsal::PartEstimate;
 using simulation::CaseMachine;

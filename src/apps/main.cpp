@@ -368,6 +368,7 @@ int start(int argc, char** argv) {
   kerf::apps::add_run(kerf, chosen);
   kerf::apps::add_resume(kerf, chosen);
   kerf::apps::add_audit(kerf, chosen);
+  kerf::apps::add_serve(kerf, chosen);
   kerf::apps::add_virtual(kerf, chosen);
   add_describe(kerf, chosen);
   add_status(kerf, chosen);

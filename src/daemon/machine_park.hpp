@@ -46,6 +46,7 @@ class MachinePark {
   [[nodiscard]] const StateFeed& feed();
   [[nodiscard]] double clock_s() const { return base::to_seconds(services_.loop->now()); }
   void on_programs_changed();
+  [[nodiscard]] const io::JournalOptions& journal() const { return services_.recording.journal; }
 
  private:
   std::expected<std::string, std::string> open(const std::string& id, const MachineRow& row);

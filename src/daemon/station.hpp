@@ -64,6 +64,7 @@ class Station {
   [[nodiscard]] const Traffic& traffic() const { return traffic_; }
   /// Null while there is no link.
   [[nodiscard]] const session::Session* session() const { return host_ ? &host_->session() : nullptr; }
+  [[nodiscard]] bool has_job() const;
   /// A job is under way, or being prepared.
   [[nodiscard]] bool is_busy() const;
   [[nodiscard]] bool has_loaded(const std::string& program) const { return program_ && program_->id == program; }
@@ -153,7 +154,6 @@ class Station {
   [[nodiscard]] CanView can_view() const;
   [[nodiscard]] std::optional<TroubleView> trouble_view() const;
   [[nodiscard]] bool is_ready() const;
-  [[nodiscard]] bool has_job() const;
   void set_phase(LinkPhase phase, std::string sentence);
 
   const StationServices services_;

@@ -16,6 +16,30 @@
 
 namespace kerf::io {
 
+/// What a container holds; the type itself where it is none.
+template <typename T>
+struct HeldIn {
+  using type = T;
+};
+template <typename T>
+struct HeldIn<std::vector<T>> {
+  using type = T;
+};
+template <typename T>
+struct HeldIn<std::optional<T>> {
+  using type = T;
+};
+template <typename T>
+struct HeldIn<std::map<std::string, T>> {
+  using type = T;
+};
+template <typename T>
+inline constexpr bool kIsOptional = std::is_same_v<T, std::optional<typename HeldIn<T>::type>>;
+template <typename T>
+inline constexpr bool kIsList = std::is_same_v<T, std::vector<typename HeldIn<T>::type>>;
+template <typename T>
+inline constexpr bool kIsMap = std::is_same_v<T, std::map<std::string, typename HeldIn<T>::type>>;
+
 /// Collects the schemas of types; those of structs are shared.
 class SchemaBook {
  public:
@@ -40,46 +64,18 @@ class SchemaBook {
   template <typename T>
   void define_struct(const std::string& name);
 
-  template <typename T>
-  struct Element;
-  template <typename T>
-  struct Element<std::vector<T>> {
-    using type = T;
-  };
-  template <typename T>
-  struct Element<std::optional<T>> {
-    using type = T;
-  };
-  template <typename T>
-  struct Element<std::map<std::string, T>> {
-    using type = T;
-  };
-  template <typename T>
-  static constexpr bool is_vector = false;
-  template <typename T>
-  static constexpr bool is_vector<std::vector<T>> = true;
-  template <typename T>
-  static constexpr bool is_map = false;
-  template <typename T>
-  static constexpr bool is_map<std::map<std::string, T>> = true;
-
   std::string prefix_;
   std::map<std::string, Json> definitions_;
 };
 
 template <typename T>
-inline constexpr bool kIsOptional = false;
-template <typename T>
-inline constexpr bool kIsOptional<std::optional<T>> = true;
-
-template <typename T>
 Json SchemaBook::of() {
   if constexpr (kIsOptional<T>) {
-    return of<typename Element<T>::type>();
-  } else if constexpr (is_vector<T>) {
-    return {{"type", "array"}, {"items", of<typename Element<T>::type>()}};
-  } else if constexpr (is_map<T>) {
-    return {{"type", "object"}, {"additionalProperties", of<typename Element<T>::type>()}};
+    return of<typename HeldIn<T>::type>();
+  } else if constexpr (kIsList<T>) {
+    return {{"type", "array"}, {"items", of<typename HeldIn<T>::type>()}};
+  } else if constexpr (kIsMap<T>) {
+    return {{"type", "object"}, {"additionalProperties", of<typename HeldIn<T>::type>()}};
   } else if constexpr (std::is_same_v<T, bool>) {
     return {{"type", "boolean"}};
   } else if constexpr (std::is_integral_v<T>) {
