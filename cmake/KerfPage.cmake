@@ -3,7 +3,8 @@
 function(kerf_page target)
   if(NOT EXISTS ${PROJECT_SOURCE_DIR}/web/index.html)
     file(WRITE ${PROJECT_BINARY_DIR}/page/page_table.cpp
-         "#include \"daemon/page_files.hpp\"\nstd::span<const kerf::daemon::PageFile> kerf::daemon::page_files() { return {}; }\n")
+         "#include \"daemon/page_files.hpp\"\n"
+         "std::span<const kerf::daemon::PageFile> kerf::daemon::page_files() { return {}; }\n")
     target_sources(${target} PRIVATE ${PROJECT_BINARY_DIR}/page/page_table.cpp)
     return()
   endif()

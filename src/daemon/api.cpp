@@ -7,19 +7,14 @@
 #include "common/base/text.hpp"
 #include "daemon/api_page.hpp"
 #include "daemon/api_replies.hpp"
+#include "daemon/program_upload.hpp"
 #include "daemon/request_guard.hpp"
 #include "io/discovery.hpp"
 #include "io/journal_database.hpp"
 #include "io/journal_store.hpp"
 #include "io/ports.hpp"
 #include "io/settings_archive.hpp"
-#include "preparation/check_text.hpp"
-#include "preparation/estimate_grades.hpp"
-#include "preparation/rehearsal.hpp"
 #include "preparation/settings_json.hpp"
-#include "rehearsal/check.hpp"
-#include "rehearsal/toolpath_stream.hpp"
-#include "simulation/machine_like.hpp"
 
 namespace kerf::daemon {
 
@@ -32,8 +27,6 @@ namespace {
 constexpr std::string_view kRoot = "/api/v1";
 constexpr std::string_view kUpload = "/api/v1/programs";
 constexpr std::string_view kLive = "/api/v1/live";
-constexpr std::uint32_t kMostTextLines = 5000;
-constexpr std::size_t kMostMarks = 5000;
 
 struct MachineAdded {
   std::string id;
@@ -60,13 +53,6 @@ struct PortRow {
 };
 BOOST_DESCRIBE_STRUCT(PortRow, (), (url, title, kind, in_use_by))
 
-struct TextReply {
-  std::uint32_t first = 0;
-  std::uint32_t total = 0;
-  std::vector<std::string> lines;
-};
-BOOST_DESCRIBE_STRUCT(TextReply, (), (first, total, lines))
-
 struct JobRow {
   std::int64_t job = 0;
   std::string program{};
@@ -87,12 +73,6 @@ HttpReply not_found(std::string sentence) {
   return error_reply(404, "NotFound", std::move(sentence));
 }
 
-std::optional<std::uint32_t> number_in(const HttpRequest& request, const std::string& name, std::uint32_t otherwise) {
-  const auto text = request.parameter(name);
-  if (!text) return otherwise;
-  return base::parse_int<std::uint32_t>(*text);
-}
-
 /// The parts of a path: "/a/b" has two.
 std::vector<std::string> parts_of(std::string_view path) {
   std::vector<std::string> parts;
@@ -107,66 +87,6 @@ std::string title_of(const io::SerialPort& port) {
       base::trim(port.maker + " " + port.name).empty() ? "Serial port" : port.maker + " " + port.name;
   return std::string(base::trim(name)) + (port.serial_number.empty() ? "" : " (" + port.serial_number + ")");
 }
-
-/// What a program is measured by: a machine that is known, or a stock one.
-simulation::CaseMachine machine_for(const session::Session* session) {
-  if (session != nullptr && session->capabilities().family != vocabulary::Firmware::Unknown) {
-    return simulation::machine_like(session->capabilities());
-  }
-  return {.personality = firmware::personality_of(vocabulary::Firmware::GrblHal)};
-}
-
-class ToolpathSource final : public io::web::BodySource {
- public:
-  ToolpathSource(SharedProgram program, const simulation::CaseMachine& machine)
-      : program_(std::move(program)),
-        stream_(program_->file.program()->text(), rehearsal::path_start_of(machine), program_->id) {}
-  [[nodiscard]] std::optional<std::string> next() override { return stream_.next(); }
-
- private:
-  const SharedProgram program_;
-  rehearsal::ToolpathStream stream_;
-};
-
-Json thinned_timeline(const job::Timeline& timeline) {
-  Json lines = Json::array();
-  Json ends = Json::array();
-  const std::size_t count = timeline.end_s.size();
-  const std::size_t step = std::max<std::size_t>(1, count / kMostMarks);
-  for (std::size_t at = 0; at < count; at += step) {
-    lines.push_back(at + 1);
-    ends.push_back(timeline.end_s[at]);
-  }
-  if (count > 0 && lines.back() != count) {
-    lines.push_back(count);
-    ends.push_back(timeline.end_s.back());
-  }
-  return {{"lines", std::move(lines)}, {"end_s", std::move(ends)}};
-}
-
-class Upload final : public io::web::BodySink {
- public:
-  Upload(ProgramLibrary& library, std::unique_ptr<ProgramLibrary::Incoming> incoming)
-      : library_(library), incoming_(std::move(incoming)) {}
-
-  [[nodiscard]] std::optional<HttpReply> append(std::string_view bytes) override {
-    if (auto kept = incoming_->append(bytes); !kept) return error_reply(507, "NoRoom", kept.error());
-    return std::nullopt;
-  }
-
-  void finish(Answer answer) override {
-    incoming_->finish([this_library = &library_, answer](const ProgramLibrary::Added& added) {
-      if (!added) return answer(error_reply(422, "NotAProgram", added.error()));
-      Json reply = {{"id", *added}};
-      reply.update(io::to_json(this_library->programs().at(*added)));
-      answer(json_reply(reply, 201));
-    });
-  }
-
- private:
-  ProgramLibrary& library_;
-  std::unique_ptr<ProgramLibrary::Incoming> incoming_;
-};
 
 }  // namespace
 
@@ -203,7 +123,7 @@ const std::vector<Api::Route>& Api::routes() {
       {"GET", "/machines/{machine}/jobs", &Api::get_jobs, "Its jobs, the newest first",
        [](SchemaBook& book) { return book.of<std::vector<JobRow>>(); }},
       {"GET", "/programs/{program}/text", &Api::get_text, "Lines of a program: `first` (from 1) and `count`",
-       [](SchemaBook& book) { return book.of<TextReply>(); }},
+       [](SchemaBook& book) { return book.of<ProgramText>(); }},
       {"GET", "/programs/{program}/toolpath", &Api::get_toolpath, "Its path, as docs/toolpath_format.md has it"},
       {"GET", "/programs/{program}/check", &Api::get_check, "What `machine` would say to it"},
       {"GET", "/programs/{program}/estimate", &Api::get_estimate, "How long it takes on `machine`"},
@@ -248,7 +168,7 @@ std::variant<std::unique_ptr<io::web::BodySink>, HttpReply> Api::on_body(const H
   if (!name || name->empty()) return error_reply(400, "NoName", "Name the program: ?name=part.nc");
   auto incoming = library_.receive(*name);
   if (!incoming) return error_reply(507, "NoRoom", incoming.error());
-  return std::make_unique<Upload>(library_, *std::move(incoming));
+  return std::make_unique<ProgramUpload>(library_, *std::move(incoming));
 }
 
 std::variant<io::web::ChannelOpener, HttpReply> Api::on_upgrade(const HttpRequest& head) {
@@ -383,85 +303,6 @@ void Api::get_jobs(const ApiCall& call, const Answer& answer) {
       answer(json_reply(io::to_json(rows)));
     };
   });
-}
-
-void Api::get_text(const ApiCall& call, const Answer& answer) {
-  const auto first = number_in(call.request, "first", 1);
-  const auto count = number_in(call.request, "count", 500);
-  if (!first || !count || *first == 0 || *count > kMostTextLines) {
-    return answer(error_reply(400, "BadRequest", "`first` counts from 1, and `count` is at most 5000."));
-  }
-  library_.open_program(call.places.front(),
-                        [answer, first = *first, count = *count](const ProgramLibrary::Opened& opened) {
-                          if (!opened) return answer(not_found(opened.error()));
-                          const job::Program& program = *(*opened)->file.program();
-                          TextReply reply{.first = first, .total = program.line_count(), .lines = {}};
-                          for (auto line = program.line(first); line && reply.lines.size() < count;
-                               line = program.line_at(program.offset_after(*line), line->number + 1)) {
-                            reply.lines.emplace_back(line->text);
-                          }
-                          answer(json_reply(io::to_json(reply)));
-                        });
-}
-
-void Api::get_toolpath(const ApiCall& call, const Answer& answer) {
-  const auto machine = call.request.parameter("machine");
-  const Station* const station = machine ? park_.find(*machine) : nullptr;
-  library_.open_program(call.places.front(),
-                        [answer, on = machine_for(station == nullptr ? nullptr : station->session())](
-                            const ProgramLibrary::Opened& opened) {
-                          if (!opened) return answer(not_found(opened.error()));
-                          answer({.content_type = "application/octet-stream",
-                                  .headers = {{"Cache-Control", "no-store"}},
-                                  .body = std::make_shared<ToolpathSource>(*opened, on)});
-                        });
-}
-
-void Api::get_check(const ApiCall& call, const Answer& answer) {
-  const auto machine = call.request.parameter("machine");
-  const Station* const station = machine ? park_.find(*machine) : nullptr;
-  const session::Session* const session = station == nullptr ? nullptr : station->session();
-  const bool is_known = session != nullptr && session->capabilities().family != vocabulary::Firmware::Unknown;
-  auto on = is_known ? rehearsal::check_machine_of(session->capabilities(), session->snapshot())
-                     : rehearsal::check_machine_of(machine_for(nullptr));
-  const std::string firmware = is_known ? session->capabilities().firmware : "grblHAL";
-  library_.open_program(
-      call.places.front(), [this, answer, on = std::move(on), firmware](const ProgramLibrary::Opened& opened) {
-        if (!opened) return answer(not_found(opened.error()));
-        pool_.run([answer, on, firmware, program = *opened]() -> std::function<void()> {
-          const auto result = rehearsal::check_program(*program->file.program(), on);
-          return [answer, reply = json_reply(preparation::check_json(result, firmware))] { answer(reply); };
-        });
-      });
-}
-
-void Api::get_estimate(const ApiCall& call, const Answer& answer) {
-  const auto machine = call.request.parameter("machine");
-  const Station* const station = machine ? park_.find(*machine) : nullptr;
-  const session::Session* const session = station == nullptr ? nullptr : station->session();
-  auto known = std::make_shared<const machine::Capabilities>(session == nullptr ? machine::Capabilities{}
-                                                                                : session->capabilities());
-  library_.open_program(
-      call.places.front(), [this, answer, known, on = machine_for(session)](const ProgramLibrary::Opened& opened) {
-        if (!opened) return answer(not_found(opened.error()));
-        pool_.run([answer, known, on, program = *opened]() -> std::function<void()> {
-          Json estimate = preparation::estimate_json(preparation::grades_of(*program->file.program(), on));
-          const auto timeline = preparation::rehearse(*program->file.program(), *known, 1.0);
-          if (timeline != nullptr) estimate["timeline"] = thinned_timeline(*timeline);
-          return [answer, reply = json_reply(estimate)] { answer(reply); };
-        });
-      });
-}
-
-void Api::delete_program(const ApiCall& call, const Answer& answer) {
-  const std::string& id = call.places.front();
-  for (const auto& [name, station] : park_.stations()) {
-    if (station->has_loaded(id)) {
-      return answer(error_reply(409, "InUse", "The program is loaded on " + station->row().name + "."));
-    }
-  }
-  const auto removed = library_.remove(id);
-  answer(removed ? json_reply(Json::object()) : not_found(removed.error()));
 }
 
 Json Api::openapi() {

@@ -23,6 +23,14 @@ struct ApiCall {
   std::vector<std::string> places;
 };
 
+/// Lines of a program, from `first` on.
+struct ProgramText {
+  std::uint32_t first = 0;
+  std::uint32_t total = 0;
+  std::vector<std::string> lines;
+};
+BOOST_DESCRIBE_STRUCT(ProgramText, (), (first, total, lines))
+
 class Api final : public io::web::WebHandler {
  public:
   Api(io::WorkerPool& pool, MachinePark& park, ProgramLibrary& library, LiveClients& clients, Answers& answers)
