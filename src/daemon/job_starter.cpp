@@ -45,8 +45,8 @@ void JobStarter::end() {
   ++number_;
   timer_.disarm();
   preparation_.reset();
-  if (view_) callbacks_.changed();
   view_.reset();
+  callbacks_.changed();
 }
 
 void JobStarter::agree() {
@@ -101,7 +101,6 @@ void JobStarter::follow(const AskOperator& question) {
 
 void JobStarter::follow(const BeginJob& begin) {
   tell(begin.told);
-  for (const std::string& line : begin.told.lines) callbacks_.noted(NoteLevel::Warning, line);
   session::StartJob job = begin.job;
   preparation_.reset();
   if (job.program == nullptr) return follow(NoJob{.sentence = "The rest of the program cannot be sent."});
@@ -129,10 +128,10 @@ void JobStarter::rehearse(session::StartJob job) {
 }
 
 void JobStarter::follow(const NoJob& none) {
-  for (const std::string& line : none.told.lines) callbacks_.noted(NoteLevel::Trouble, line);
-  const bool was_wished = none.reason != NoJob::Reason::NotWished;
-  callbacks_.noted(was_wished ? NoteLevel::Trouble : NoteLevel::Note, none.sentence);
+  callbacks_.noted(NoteLevel::Trouble, none.sentence);
+  PreparationView refused{.phase = PreparationPhase::Refused, .sentence = none.sentence, .told = none.told.lines};
   end();
+  view_ = std::move(refused);
 }
 
 }  // namespace kerf::daemon

@@ -36,10 +36,12 @@ class JobStarter {
   /// The operator's answer to the question.
   [[nodiscard]] bool asks() const { return view_ && view_->question.has_value(); }
   void agree();
-  /// Also without a question: there will be no job.
+  /// Also without a question: there is, or will be, no job.
   void end();
   void on_event(const session::Event& event);
 
+  /// There will be a job, or a question.
+  [[nodiscard]] bool is_busy() const { return view_ && view_->phase != PreparationPhase::Refused; }
   [[nodiscard]] const std::optional<PreparationView>& view() const { return view_; }
 
  private:

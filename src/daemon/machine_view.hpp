@@ -69,12 +69,13 @@ struct JobView : job::JobState {
 BOOST_DESCRIBE_STRUCT(JobView, (job::JobState), (program_id))
 
 enum class PreparationPhase {
-  Settling,   ///< what has to be done and asked first
-  Checking,   ///< the program is read as the machine will
-  Asking,     ///< the operator has to say yes or no
-  Rehearsing  ///< on the virtual controller, for the times
+  Settling,    ///< what has to be done and asked first
+  Checking,    ///< the program is read as the machine will
+  Asking,      ///< the operator has to say yes or no
+  Rehearsing,  ///< on the virtual controller, for the times
+  Refused,     ///< there is no job, and the sentence says why; until it is declined or something else begins
 };
-BOOST_DESCRIBE_ENUM(PreparationPhase, Settling, Checking, Asking, Rehearsing)
+BOOST_DESCRIBE_ENUM(PreparationPhase, Settling, Checking, Asking, Rehearsing, Refused)
 
 /// Between Start and the first line.
 struct PreparationView {

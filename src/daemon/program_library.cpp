@@ -76,7 +76,7 @@ void ProgramLibrary::add_file(const std::string& path, const std::string& name, 
 void ProgramLibrary::take_in(const std::string& path, const std::string& name, bool example,
                              std::function<void(Added)> added) {
   pool_.run([this, path, name, example, added = std::move(added)]() -> std::function<void()> {
-    auto file = io::ProgramFile::load(path);
+    auto file = io::ProgramFile::load(path, name);
     if (!file) {
       std::error_code ignored;
       fs::remove(path, ignored);
@@ -106,7 +106,7 @@ void ProgramLibrary::open_program(const std::string& id, std::function<void(Open
   if (auto program = open_[id].lock()) return opened(std::move(program));
   pool_.run(
       [this, id, name = known->second.name, path = path_of(id), opened = std::move(opened)]() -> std::function<void()> {
-        auto file = io::ProgramFile::load(path);
+        auto file = io::ProgramFile::load(path, name);
         if (!file) return [opened, why = io::explain(file.error(), name)] { opened(std::unexpected(why)); };
         auto program = std::make_shared<const LibraryProgram>(LibraryProgram{id, name, path, *std::move(file)});
         return [this, id, program, opened] {

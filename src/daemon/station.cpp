@@ -74,7 +74,7 @@ bool Station::has_job() const {
 }
 
 bool Station::is_busy() const {
-  return has_job() || starter_.view().has_value();
+  return has_job() || starter_.is_busy();
 }
 
 void Station::set_phase(LinkPhase phase, std::string sentence) {
@@ -155,6 +155,7 @@ void Station::on(const session::ControllerReset& reset) {
 }
 
 void Station::on(const session::ControllerBusy& busy) {
+  if (!is_ready()) set_phase(LinkPhase::Greeting, busy.sentence);
   busy_ = busy.sentence;
   notes_.add(NoteLevel::Warning, busy.sentence);
 }

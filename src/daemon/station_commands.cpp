@@ -105,7 +105,7 @@ CommandAnswer Station::do_it(const Resume&) {
 }
 
 CommandAnswer Station::do_it(const Stop&) {
-  const bool was_starting = starter_.view().has_value();
+  const bool was_starting = starter_.is_busy();
   starter_.end();
   const bool was_jogging = jog_.is_held();
   end_jog();
@@ -132,7 +132,7 @@ CommandAnswer Station::do_it(const Unlock&) {
 }
 
 CommandAnswer Station::do_it(const Home&) {
-  if (starter_.view()) return refused("JobUnderWay", "A job is about to begin; stop it first.");
+  if (starter_.is_busy()) return refused("JobUnderWay", "A job is about to begin; stop it first.");
   return submit(session::Home{});
 }
 
@@ -166,7 +166,7 @@ CommandAnswer Station::do_it(const Load& command) {
 
 CommandAnswer Station::do_it(const Start& command) {
   if (!program_) return refused("NoProgram", "No program is loaded on this machine.");
-  if (starter_.view()) return refused("JobUnderWay", "A job is about to begin already.");
+  if (starter_.is_busy()) return refused("JobUnderWay", "A job is about to begin already.");
   if (!host_) return not_connected();
   if (const auto why = host_->session().why_no_job(services_.loop->now())) {
     return refused(boost::describe::enum_to_string(*why, "?"), session::sentence_of(*why));
@@ -226,7 +226,7 @@ CommandAnswer Station::do_it(const ResumeJob& command) {
         auto work = preparation::find_interrupted_work(*journal, number);
         if (!work) return std::unexpected(work.error());
         const std::string file = work->history.begun.origin.path;
-        auto program = io::ProgramFile::load(file);
+        auto program = io::ProgramFile::load(file, work->history.begun.program);
         if (!program) return std::unexpected(io::explain(program.error(), file));
         const job::JobBegun& begun = work->history.begun;
         const std::string& then = begun.origin.file_hash.empty() ? begun.hash : begun.origin.file_hash;
@@ -322,7 +322,7 @@ CommandAnswer Station::do_it(const SelectSystem& command) {
 }
 
 CommandAnswer Station::do_it(const SendLine& command) {
-  if (starter_.view()) return refused("JobUnderWay", "A job is about to begin; stop it first.");
+  if (starter_.is_busy()) return refused("JobUnderWay", "A job is about to begin; stop it first.");
   return send_line(command.text);
 }
 

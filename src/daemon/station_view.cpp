@@ -60,8 +60,9 @@ LimitsView Station::limits_of(const Capabilities& known) const {
   for (std::size_t axis = 0; axis < known.axes.letters.size(); ++axis) {
     const auto travel = machine::travel_of_axis(axis, known, dialect);
     if (!travel) return limits;
-    least.push_back(travel->min_mm);
-    most.push_back(travel->max_mm);
+    // Adding 0 makes 0 of -0.
+    least.push_back(travel->min_mm + 0.0);
+    most.push_back(travel->max_mm + 0.0);
   }
   limits.min_mm = std::move(least);
   limits.max_mm = std::move(most);
@@ -96,7 +97,7 @@ CanView Station::can_view() const {
   if (!is_ready()) return can;
   const Instant now = services_.loop->now();
   const session::Session& session = host_->session();
-  const std::string preparing = starter_.view() ? "A job is about to begin." : "";
+  const std::string preparing = starter_.is_busy() ? "A job is about to begin." : "";
   const auto line = [&](std::string_view text) {
     return preparing.empty() ? sentence_of(session.why_no_line(now, text)) : preparing;
   };

@@ -151,15 +151,19 @@ std::string explain(const ProgramFileError& error, std::string_view path) {
 }
 
 std::expected<ProgramFile, ProgramFileError> ProgramFile::load(const std::string& path) {
+  return load(path, path);
+}
+
+std::expected<ProgramFile, ProgramFileError> ProgramFile::load(const std::string& path, const std::string& name) {
   const Descriptor original(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
   struct stat before{};
   if (!original.is_open() || ::fstat(original.get(), &before) != 0) return failed(file_error(errno));
   // What is neither file nor pipe is refused there.
   const bool is_file = S_ISREG(before.st_mode);
-  if (!is_file && !S_ISFIFO(before.st_mode)) return held(path);
+  if (!is_file && !S_ISFIFO(before.st_mode)) return read_whole(path, name);
   if (const Packing packing = is_file ? packing_of(head_of(original.get())) : Packing::None; packing != Packing::None)
-    return unpacked(path, original.get(), packing);
-  if (is_file && std::cmp_less_equal(before.st_size, kMostHeldBytes)) return held(path);
+    return unpacked(name, original.get(), packing);
+  if (is_file && std::cmp_less_equal(before.st_size, kMostHeldBytes)) return read_whole(path, name);
   const Descriptor copy(open_nameless());
   if (!copy.is_open()) return failed(file_error(errno));
   if (const int error_number = copy_file(original.get(), copy.get()); error_number != 0) {
@@ -169,7 +173,7 @@ std::expected<ProgramFile, ProgramFileError> ProgramFile::load(const std::string
   if (is_file && (::fstat(original.get(), &after) != 0 || !is_same_state(before, after))) {
     return failed({.fault = FileFault::Changing, .system_text = {}});
   }
-  return mapped(path, copy.get());
+  return mapped(name, copy.get());
 }
 
 /// A text that comes in pieces: in memory while it is short, then in a file without a name.
@@ -195,12 +199,12 @@ class ProgramFile::Assembly {
   std::optional<Descriptor> copy_;
 };
 
-std::expected<ProgramFile, ProgramFileError> ProgramFile::unpacked(const std::string& path, int packed,
+std::expected<ProgramFile, ProgramFileError> ProgramFile::unpacked(const std::string& name, int packed,
                                                                    Packing packing) {
   Assembly assembly;
   const auto done = unpack(packed, packing, [&assembly](std::string_view piece) { return assembly.put(piece); });
   if (!done) return failed(done.error());
-  return assembly.finish(path);
+  return assembly.finish(name);
 }
 
 std::expected<ProgramFile, ProgramFileError> ProgramFile::assemble(const std::string& name,
@@ -214,27 +218,27 @@ std::expected<ProgramFile, ProgramFileError> ProgramFile::assemble(const std::st
   return assembly.finish(name);
 }
 
-std::expected<ProgramFile, ProgramFileError> ProgramFile::held(const std::string& path) {
+std::expected<ProgramFile, ProgramFileError> ProgramFile::read_whole(const std::string& path, const std::string& name) {
   auto text = read_text_file(path);
   if (!text) return failed(std::move(text.error()));
-  return held(path, *std::move(text));
+  return held(name, *std::move(text));
 }
 
-std::expected<ProgramFile, ProgramFileError> ProgramFile::held(const std::string& path, std::string text) {
-  auto program = job::Program::load(path, std::move(text));
+std::expected<ProgramFile, ProgramFileError> ProgramFile::held(const std::string& name, std::string text) {
+  auto program = job::Program::load(name, std::move(text));
   if (!program) return std::unexpected<ProgramFileError>(std::move(program.error()));
   ProgramFile file;
   file.program_ = *std::move(program);
   return file;
 }
 
-std::expected<ProgramFile, ProgramFileError> ProgramFile::mapped(const std::string& path, int copy) {
+std::expected<ProgramFile, ProgramFileError> ProgramFile::mapped(const std::string& name, int copy) {
   struct stat copied{};
   if (::fstat(copy, &copied) != 0) return failed(file_error(errno));
   if (copied.st_size == 0) return std::unexpected<ProgramFileError>(job::ProgramFault{});
   const auto mapping = std::make_shared<const Mapping>(copy, static_cast<std::size_t>(copied.st_size));
   if (!mapping->is_good()) return failed(file_error(errno));
-  job::ProgramReader reader(path, mapping, mapping->text());
+  job::ProgramReader reader(name, mapping, mapping->text());
   while (reader.read_on(kPieceBytes)) mapping->give_back();
   auto program = reader.finish();
   if (!program) return std::unexpected<ProgramFileError>(std::move(program.error()));

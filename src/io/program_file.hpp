@@ -33,6 +33,9 @@ class ProgramFile {
  public:
   /// Reads, checks and indexes the whole file; a gigabyte takes seconds.
   [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> load(const std::string& path);
+  /// The program has another name than its file.
+  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> load(const std::string& path,
+                                                                         const std::string& name);
 
   /// The same for a text that `write` gives away piece by piece.
   using Put = std::function<void(std::string_view)>;
@@ -47,11 +50,12 @@ class ProgramFile {
   class Mapping;
   class Assembly;
   ProgramFile() = default;
-  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> held(const std::string& path);
-  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> held(const std::string& path, std::string text);
-  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> mapped(const std::string& path, int copy);
+  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> read_whole(const std::string& path,
+                                                                               const std::string& name);
+  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> held(const std::string& name, std::string text);
+  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> mapped(const std::string& name, int copy);
 
-  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> unpacked(const std::string& path, int packed,
+  [[nodiscard]] static std::expected<ProgramFile, ProgramFileError> unpacked(const std::string& name, int packed,
                                                                              Packing packing);
 
   /// Null for a program in memory.

@@ -41,6 +41,7 @@ constexpr std::size_t kPiece = std::size_t{64} << 10U;
 constexpr auto kHeadLimit = seconds(10);
 constexpr auto kPieceLimit = seconds(30);
 constexpr auto kIdleLimit = seconds(60);
+constexpr auto kPartingLimit = seconds(2);
 
 HttpReply refusal(int status, std::string_view code, std::string_view sentence) {
   return {.status = status,
@@ -243,8 +244,19 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
 
   void on_replied(error_code fault) {
     reply_ = {};
-    if (fault || !keep_alive_) return end();
-    read_head(kIdleLimit);
+    if (fault) return end();
+    if (keep_alive_) return read_head(kIdleLimit);
+    // To close on what was not read would reset the connection, and the reply might never arrive.
+    error_code ignored;
+    stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    stream_.expires_after(kPartingLimit);
+    discard();
+  }
+
+  void discard() {
+    stream_.async_read_some(asio::buffer(piece_), [self = shared_from_this()](error_code fault, std::size_t) {
+      fault ? self->end() : self->discard();
+    });
   }
 
   beast::tcp_stream stream_;

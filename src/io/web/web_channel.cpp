@@ -29,6 +29,7 @@ class WebChannel final : public Channel, public Connection, public std::enable_s
   WebChannel(tcp::socket socket, http::request<http::empty_body> head, ChannelOpener opener)
       : stream_(std::move(socket)), head_(std::move(head)), opener_(std::move(opener)) {
     stream_.text(true);
+    stream_.auto_fragment(false);
     stream_.read_message_max(kLongestMessage);
     stream_.set_option(websocket::stream_base::timeout{
         .handshake_timeout = kHandshakeLimit, .idle_timeout = kSilenceLimit, .keep_alive_pings = true});
