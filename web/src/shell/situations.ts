@@ -89,7 +89,7 @@ function standing(view: MachineView, condition: Condition): Situation[] {
   const change = view.job?.phase === 'Held' ? view.job.tool_change : undefined;
   const resume: Way[] = [{ label: 'way.resume', command: 'Resume', action: 'resume', held: true }];
   const prompt = view.snapshot?.prompt;
-  const told = prompt ? { told: prompt } : undefined;
+  const evidence = prompt ? [prompt] : undefined;
   const found: Situation[] = [];
   if (condition === 'Door')
     found.push({
@@ -97,7 +97,8 @@ function standing(view: MachineView, condition: Condition): Situation[] {
       level: 'warning',
       condition,
       title: 'situation.door',
-      text: told ?? 'situation.door.text',
+      text: 'situation.door.text',
+      evidence,
       ways: resume,
     });
   if (condition === 'Tool' || change)
@@ -107,7 +108,8 @@ function standing(view: MachineView, condition: Condition): Situation[] {
       condition: 'Tool',
       title: change?.tool === undefined ? 'situation.tool' : 'situation.toolNumber',
       values: { tool: change?.tool ?? '' },
-      text: told ?? 'situation.tool.text',
+      text: 'situation.tool.text',
+      evidence,
       ways: resume,
     });
   if (condition === 'Check')

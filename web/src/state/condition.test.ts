@@ -15,6 +15,7 @@ const view = (more: Partial<MachineView> = {}): MachineView => ({
 it('claims a state only as long as it was heard', () => {
   expect(conditionOf(view(), true, 100.5)).toBe('Idle');
   expect(conditionOf(view(), true, 110)).toBe('Stale');
+  expect(conditionOf(view({ snapshot: { state: 'Home', reported_at: 100 } }), true, 110)).toBe('Home');
   expect(conditionOf(view(), false, 100.5)).toBe('Offline');
   expect(conditionOf(undefined, true, 0)).toBe('NoMachine');
   expect(conditionOf(view({ link: { phase: 'Lost', sentence: '' } }), true, 100)).toBe('Lost');

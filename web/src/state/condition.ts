@@ -21,15 +21,19 @@ export function age(view: MachineView | undefined, now_s: number): number | unde
   return reported === undefined ? undefined : Math.max(0, now_s - reported);
 }
 
+export const isOld = (view: MachineView | undefined, now_s: number): boolean => (age(view, now_s) ?? 0) > staleAfter_s;
+
 export function conditionOf(view: MachineView | undefined, connected: boolean, now_s: number): Condition {
   if (!connected) return 'Offline';
   if (!view) return 'NoMachine';
   if (view.link.phase !== 'Ready') return view.link.phase;
-  if ((age(view, now_s) ?? 0) > staleAfter_s) return 'Stale';
-  return view.snapshot?.state ?? 'Unknown';
+  const state = view.snapshot?.state ?? 'Unknown';
+  // Many controllers say nothing while they home; the server knows when that is no longer it.
+  if (state !== 'Home' && isOld(view, now_s)) return 'Stale';
+  return state;
 }
 
-/** Positions and states on the screen are those of now. */
+/** The state is one that the machine itself tells. */
 export const isLive = (condition: Condition): boolean =>
   !['Offline', 'NoMachine', 'Off', 'Opening', 'Greeting', 'Silent', 'Lost', 'Stale', 'Unknown'].includes(condition);
 

@@ -2,7 +2,7 @@
 
 import type { Action, Answer, MachineView } from '../api/types';
 import { t } from '../i18n/index.svelte';
-import { age, conditionOf, isLive, isMoving } from './condition';
+import { age, conditionOf, isLive, isMoving, isOld } from './condition';
 import { live } from './live.svelte';
 import { prefs } from './prefs.svelte';
 
@@ -12,7 +12,8 @@ class Current {
   readonly view = $derived<MachineView | undefined>(live.document?.machines[this.id]);
   readonly snapshot = $derived(this.view?.snapshot);
   readonly condition = $derived(conditionOf(this.view, live.connected, live.now_s));
-  readonly isLive = $derived(isLive(this.condition));
+  /** Positions and the rest on the screen are those of now. */
+  readonly isLive = $derived(isLive(this.condition) && !isOld(this.view, live.now_s));
   readonly isMoving = $derived(isMoving(this.condition));
   readonly age_s = $derived(age(this.view, live.now_s));
   readonly axes = $derived([...(this.view?.limits?.axes ?? 'XYZ')]);

@@ -11,18 +11,22 @@ class Program {
   /** Seconds into the job that the scrubber shows; negative when it follows the machine. */
   scrub_s = $state(-1);
   private asked = '';
+  private id = '';
   private stopAsking: AbortController | undefined;
 
   /** Asked again when the program, the machine or its place changes. */
-  look(id: string, machine: string): void {
-    const wanted = id && machine ? `${id} ${machine}` : '';
+  look(id: string, machine: string, place: string): void {
+    const wanted = id && machine ? `${id} ${machine} ${place}` : '';
     if (wanted === this.asked) return;
     this.asked = wanted;
     this.stopAsking?.abort();
     this.check = undefined;
     this.estimate = undefined;
-    this.selectedLine = 0;
-    this.scrub_s = -1;
+    if (id !== this.id) {
+      this.selectedLine = 0;
+      this.scrub_s = -1;
+    }
+    this.id = id;
     if (wanted) void this.ask(id, machine);
   }
 
