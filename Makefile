@@ -7,11 +7,15 @@ PEER ?=
 # How long `make test` runs each fuzz target.
 KERF_FUZZ_SECONDS ?= 20
 
-.PHONY: run build test campaign conformance bench bench-stream docs tidy format lint clean
+.PHONY: run serve build test campaign conformance bench bench-stream docs tidy format lint clean
 
 # A part of about four minutes, cut by the built-in virtual grblHAL ten times as fast.
 run: build
 	build/kerf run examples/coaster.nc --machine "virtual:grblhal?speed=10"
+
+# The web page on a virtual grblHAL, with the same part loaded.
+serve: build
+	build/kerf serve --program examples/coaster.nc
 
 build:
 	tools/install_dependencies.sh run

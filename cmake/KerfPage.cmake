@@ -1,14 +1,6 @@
 # kerf_page(TARGET)
 # Builds the page of web/ and puts it into TARGET, as it is served (tools/build_page.sh).
 function(kerf_page target)
-  if(NOT EXISTS ${PROJECT_SOURCE_DIR}/web/index.html)
-    file(WRITE ${PROJECT_BINARY_DIR}/page/page_table.cpp
-         "#include \"daemon/page_files.hpp\"\n"
-         "std::span<const kerf::daemon::PageFile> kerf::daemon::page_files() { return {}; }\n")
-    target_sources(${target} PRIVATE ${PROJECT_BINARY_DIR}/page/page_table.cpp)
-    return()
-  endif()
-  enable_language(ASM)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/web/src/* ${PROJECT_SOURCE_DIR}/web/public/*)
   set(page ${PROJECT_BINARY_DIR}/page)
   add_custom_command(

@@ -12,7 +12,8 @@ if [[ $(node --version | sed 's/^v//; s/\..*//') -lt 20 ]]; then
 fi
 
 # One build at a time: two build folders may want it at once.
-exec 9>.build-lock
+mkdir -p ../build
+exec 9>../build/page.lock
 flock 9
 if [[ ! -e node_modules/.package-lock.json || package-lock.json -nt node_modules/.package-lock.json ]]; then
   npm ci --no-audit --no-fund

@@ -20,8 +20,8 @@ case "${1:-}" in
     ;;
 esac
 
-# An independent sender in tests/live runs on Node 18 or newer, wherever that comes from.
-if [[ $1 == test ]] && ! { command -v node && command -v npm; } >/dev/null; then
+# The page is built with Node, and an independent sender in tests/live runs on it, wherever it comes from.
+if ! { command -v node && command -v npm; } >/dev/null; then
   wanted+=(nodejs npm)
 fi
 

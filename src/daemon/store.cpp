@@ -1,5 +1,7 @@
 #include "daemon/store.hpp"
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -8,6 +10,8 @@
 
 namespace kerf::daemon {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int kBusyPatienceMs = 5000;
 
@@ -42,6 +46,12 @@ Store::Store(std::unique_ptr<SQLite::Database> database) : database_(std::move(d
 Store::~Store() = default;
 
 std::expected<std::unique_ptr<Store>, std::string> Store::open(const std::string& path) {
+  std::error_code fault;
+  fs::create_directories(fs::path(path).parent_path(), fault);
+  if (fault) {
+    return std::unexpected(fmt::format("Nothing can be kept in {} ({}): name another folder with --state.",
+                                       fs::path(path).parent_path().string(), fault.message()));
+  }
   try {
     auto database =
         std::make_unique<SQLite::Database>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyPatienceMs);

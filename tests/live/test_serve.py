@@ -1,7 +1,8 @@
 """`kerf serve`: machines that the daemon owns, worked over its API."""
 
+import gzip
 import json
-import os
+import re
 import signal
 import socket
 import tempfile
@@ -71,6 +72,21 @@ class Machines(LiveTest):
                 "serve", *arguments)
             self.assertEqual(ended.returncode, USAGE, arguments)
             self.assertTrue(ended.stderr.strip(), arguments)
+
+
+class Page(LiveTest):
+    def test_is_in_the_program(self):
+        with Daemon("-m", FAST) as daemon:
+            status, page = daemon.request("GET", "/")
+            self.assertEqual(status, 200)
+            assets = re.findall(rb'(?:src|href)="(/[^"]+)"', page)
+            self.assertTrue(assets)
+            self.assertEqual(re.findall(rb'(?:src|href)="https?:', page), [], "it needs no other server")
+            for asset in assets:
+                status, plain = daemon.request("GET", asset.decode())
+                self.assertEqual(status, 200, asset)
+                status, packed = daemon.request("GET", asset.decode(), headers={"Accept-Encoding": "gzip"})
+                self.assertIn(plain, (packed, gzip.decompress(packed) if packed[:2] == b"\x1f\x8b" else b""))
 
 
 class Jobs(LiveTest):
