@@ -218,11 +218,9 @@ export interface SettingGroup {
 }
 
 export interface SettingsVersion {
-  version: number;
-  at?: string;
-  taken?: string;
-  reason?: string;
-  changes?: unknown[];
+  number: number;
+  taken: string;
+  reason: string;
 }
 
 export interface CodeFact {

@@ -30,8 +30,7 @@ export class SettingsDraft {
       this.settings = told.settings;
       this.groups = told.groups ?? [];
       this.problem = '';
-      const history = await get<SettingsVersion[] | { versions: SettingsVersion[] }>(`${at}/history`);
-      this.versions = Array.isArray(history) ? history : history.versions;
+      this.versions = await get<SettingsVersion[]>(`${at}/history`);
     } catch (error) {
       this.problem = (error as Error).message;
     } finally {

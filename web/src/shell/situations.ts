@@ -48,6 +48,9 @@ function link(view: MachineView, condition: Condition): Situation[] {
   return [{ id: condition, level, condition, title, text: { told: view.link.sentence }, ways: connect }];
 }
 
+const isUnderWay = (view: MachineView): boolean =>
+  !!view.job && ['Running', 'Holding', 'Held', 'Draining', 'Stopping'].includes(view.job.phase);
+
 function trouble(view: MachineView, condition: Condition): Situation[] {
   const { trouble, snapshot } = view;
   const unlock: Way[] =
@@ -58,11 +61,13 @@ function trouble(view: MachineView, condition: Condition): Situation[] {
           { label: 'way.unlock', command: 'Unlock', action: 'unlock' },
         ]
       : [];
-  if (trouble)
+  // What a job waits for is over with the job.
+  const isOver = trouble && ['Stall', 'OffPath'].includes(trouble.kind) && !isUnderWay(view);
+  if (trouble && !isOver)
     return [
       {
         id: 'trouble',
-        level: 'trouble',
+        level: condition === 'Alarm' ? 'trouble' : 'warning',
         condition: condition === 'Alarm' ? 'Alarm' : 'Hold',
         title: { told: trouble.headline },
         evidence: trouble.evidence,
