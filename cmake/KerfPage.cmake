@@ -8,7 +8,7 @@ function(kerf_page target)
     COMMAND ${PROJECT_SOURCE_DIR}/tools/build_page.sh ${page}
     DEPENDS ${sources} ${PROJECT_SOURCE_DIR}/web/index.html ${PROJECT_SOURCE_DIR}/web/package-lock.json
             ${PROJECT_SOURCE_DIR}/web/vite.config.ts ${PROJECT_SOURCE_DIR}/tools/build_page.sh
-            ${PROJECT_SOURCE_DIR}/tools/embed_page.mjs
+            ${PROJECT_SOURCE_DIR}/tools/in_web.sh ${PROJECT_SOURCE_DIR}/tools/embed_page.mjs
     COMMENT "Building the page"
     VERBATIM)
   # CMake does not look into an .incbin.

@@ -7,7 +7,7 @@ run_packages=(make g++ cmake ninja-build pkg-config libboost1.81-dev libfmt-dev 
   libedit-dev libudev-dev libavahi-client-dev zlib1g-dev libzstd-dev libxxhash-dev libsqlite3-dev libsqlitecpp-dev
   libsystemd-dev libcairo2-dev fonts-dejavu-core)
 test_packages=(ccache libgtest-dev libgmock-dev librapidcheck-dev python3 clang-19 libclang-rt-19-dev
-  clang-format-19)
+  clang-format-19 chromium)
 lint_packages=(clang-tidy-19 git)
 
 case "${1:-}" in

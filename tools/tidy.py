@@ -308,7 +308,7 @@ RULES: list[Callable[[SourceFile], Iterator[Finding]]] = [
     check_unfinished, check_comments, check_portability, check_sleeps,
 ]
 
-SKIPPED_FOLDERS = {".git", "build", "out", ".cache", "node_modules", "__pycache__"}
+SKIPPED_FOLDERS = {".git", "build", "out", ".cache", "node_modules", "dist", "__pycache__"}
 
 
 def read_tree(root: Path) -> Iterator[SourceFile]:
