@@ -4,8 +4,8 @@ import * as three from 'three';
 import { fragmentShader, vertexShader } from './shaders';
 import type { Strokes } from './strokes';
 
-/** Above this many segments the path itself is drawn only from near. */
-const manySegments = 1_500_000;
+/** Above this many segments levels stand for what is smaller than a pixel. */
+const manySegments = 40_000;
 /** Above this many it is not kept at all: the finest level that was thinned out stands for it. */
 const mostKept = 4_000_000;
 const tried_ms = 30;
@@ -16,6 +16,13 @@ interface Part {
   first: number;
   last: number;
   segments: number;
+}
+
+/** Known from the server, so that nobody has to go over all vertices for it. */
+function sphereOf(bounds: number[]): three.Sphere {
+  const [a, b, c, d, e, f] = bounds as [number, number, number, number, number, number];
+  if (a > d) return new three.Sphere(new three.Vector3(), Infinity);
+  return new three.Box3(new three.Vector3(a, b, c), new three.Vector3(d, e, f)).getBoundingSphere(new three.Sphere());
 }
 
 export class PathLines {
@@ -49,6 +56,7 @@ export class PathLines {
     geometry.setAttribute('line', new three.BufferAttribute(strokes.lines, 1));
     geometry.setAttribute('kind', new three.BufferAttribute(strokes.kinds, 1));
     geometry.setIndex(new three.BufferAttribute(strokes.indices, 1));
+    geometry.boundingSphere = sphereOf(strokes.bounds);
     const lines = new three.LineSegments(geometry, this.material);
     lines.visible = strokes.level === 0;
     this.group.add(lines);
@@ -56,16 +64,27 @@ export class PathLines {
     this.parts.push({ lines, level, first, last, segments });
   }
 
-  /** The coarsest level whose error is below a pixel, once the path itself is too much to draw. */
-  chooseLevel(pixel_mm: number): void {
+  /** The coarsest level whose error is below a pixel, or coarser yet where more than `most` segments were in sight. */
+  chooseLevel(pixel_mm: number, sight: three.Frustum, most: number): void {
     const all = this.segments[0] ?? 0;
     let level = 0;
     if (all > manySegments)
       this.tolerances.forEach((tolerance, at) => {
-        if (tolerance <= pixel_mm && (this.segments[at + 1] ?? 0) > 0) level = at + 1;
+        if (tolerance <= pixel_mm && this.has(at + 1)) level = at + 1;
       });
-    if (all > mostKept && level === 0 && this.tolerances.length > 0) level = 1;
+    if (all > mostKept && level === 0 && this.has(1)) level = 1;
+    while (this.has(level + 1) && this.inSight(level, sight) > most) level++;
     for (const part of this.parts) part.lines.visible = part.level === level;
+  }
+
+  private has(level: number): boolean {
+    return (this.segments[level] ?? 0) > 0;
+  }
+
+  private inSight(level: number, sight: three.Frustum): number {
+    return this.parts
+      .filter(({ level: one, lines }) => one === level && sight.intersectsObject(lines))
+      .reduce((sum, part) => sum + part.segments, 0);
   }
 
   setProgress(doneBefore: number, nowUntil: number, marked: number): void {

@@ -11,7 +11,11 @@ export interface Box {
   max: number[];
 }
 
-const sight: Record<View, [number, number, number]> = {
+const quiet_ms = 250;
+const fewSegments = 50_000;
+const manySegments = 400_000;
+
+const directions: Record<View, [number, number, number]> = {
   iso: [-0.6, -1, 0.75],
   top: [0, -0.0001, 1],
   front: [0, -1, 0.0001],
@@ -33,6 +37,9 @@ export class Scene {
   private envelope: three.LineSegments | undefined;
   private size = { width: 1, height: 1 };
   private isDue = false;
+  private isCalm = false;
+  private isTurned = false;
+  private refining: ReturnType<typeof setTimeout> | undefined;
   private bounds = new three.Box3();
 
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -43,6 +50,8 @@ export class Scene {
     this.controls.enableDamping = false;
     this.controls.zoomToCursor = true;
     this.controls.addEventListener('change', () => this.draw());
+    this.controls.addEventListener('start', () => (this.isTurned = true));
+    this.controls.addEventListener('end', () => ((this.isTurned = false), this.draw()));
     const cone = new three.ConeGeometry(3, 10, 24).rotateX(-Math.PI / 2).translate(0, 0, 5);
     this.tool = new three.Mesh(cone, new three.MeshBasicMaterial({ transparent: true, opacity: 0.9 }));
     this.tool.visible = false;
@@ -101,7 +110,7 @@ export class Scene {
     const box = this.framed();
     const centre = box.getCenter(new three.Vector3());
     this.controls.target.copy(centre);
-    this.camera.position.copy(centre).add(new three.Vector3(...sight[view]).multiplyScalar(1000));
+    this.camera.position.copy(centre).add(new three.Vector3(...directions[view]).multiplyScalar(1000));
     this.camera.lookAt(centre);
     this.camera.updateMatrixWorld();
     const inSight = box.clone().applyMatrix4(this.camera.matrixWorldInverse).getSize(new three.Vector3());
@@ -142,12 +151,31 @@ export class Scene {
       const pixel = 1 / this.camera.zoom;
       this.tool.scale.setScalar(pixel * 3.2);
       this.zero.scale.setScalar(pixel * 4);
-      this.path.chooseLevel(pixel);
+      this.path.chooseLevel(pixel, this.sight(), this.hurries() ? fewSegments : manySegments);
       this.renderer.render(this.scene, this.camera);
     });
   }
 
+  /** Picture follows picture: coarse ones now, a fine one when it is quiet. */
+  private hurries(): boolean {
+    clearTimeout(this.refining);
+    const isCalm = this.isCalm && !this.isTurned;
+    this.isCalm = false;
+    if (!isCalm)
+      this.refining = setTimeout(() => {
+        this.isCalm = true;
+        this.draw();
+      }, quiet_ms);
+    return !isCalm;
+  }
+
+  private sight(): three.Frustum {
+    const { projectionMatrix, matrixWorldInverse } = this.camera;
+    return new three.Frustum().setFromProjectionMatrix(projectionMatrix.clone().multiply(matrixWorldInverse));
+  }
+
   dispose(): void {
+    clearTimeout(this.refining);
     this.controls.dispose();
     this.path.clear();
     this.renderer.dispose();
