@@ -1,7 +1,6 @@
 // A gamepad jogs while its dead-man button (a shoulder) is held and a stick is out of its middle. Nothing else does.
 
 import type { AxisDirection } from '../api/types';
-import { prefs } from '../state/prefs.svelte';
 import { press, release } from './jog.svelte';
 import { sameDirection } from './keys';
 
@@ -49,7 +48,7 @@ class Gamepad {
   private turn(direction: AxisDirection | undefined): void {
     if (sameDirection(direction, this.direction)) return;
     this.direction = direction;
-    if (direction) press(direction, prefs.jogFeed);
+    if (direction) press(direction);
     else release();
   }
 }

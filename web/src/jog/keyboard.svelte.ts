@@ -2,7 +2,7 @@
 
 import { prefs } from '../state/prefs.svelte';
 import { directionOf, isJogKey, sameDirection } from './keys';
-import { press, release, step } from './jog.svelte';
+import { chosenFeed, press, release, step } from './jog.svelte';
 
 const idle_ms = 30_000;
 const fast = 4;
@@ -72,7 +72,7 @@ class Keyboard {
 
   private turn(before: ReturnType<typeof directionOf>, after: ReturnType<typeof directionOf>, isFast: boolean): void {
     if (sameDirection(before, after)) return;
-    if (after) press(after, prefs.jogFeed * (isFast ? fast : 1));
+    if (after) press(after, chosenFeed() * (isFast ? fast : 1));
     else release();
   }
 

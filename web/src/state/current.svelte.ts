@@ -24,6 +24,10 @@ class Current {
   readonly jobRuns = $derived(
     !!this.job && ['Running', 'Holding', 'Held', 'Draining', 'Stopping'].includes(this.job.phase),
   );
+  /** The job under way, or the last one if it was of the program that is loaded now. */
+  readonly shownJob = $derived(
+    this.jobRuns || (!!this.job?.program_id && this.job.program_id === this.programId) ? this.job : undefined,
+  );
   /** Another screen has the jog. */
   readonly jogElsewhere = $derived(!!this.view?.jog?.lease && this.view.jog.lease !== live.client);
 

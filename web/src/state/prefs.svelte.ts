@@ -10,6 +10,7 @@ interface Kept {
   language: Language;
   machine: string;
   jogStep_mm: number;
+  jogStep_inch: number;
   jogFeed: number;
   jogMode: 'step' | 'hold';
 }
@@ -33,13 +34,17 @@ class Prefs {
   language = $state<Language>(before.language ?? (german ? 'de' : 'en'));
   machine = $state(before.machine ?? '');
   jogStep_mm = $state(before.jogStep_mm ?? 1);
+  jogStep_inch = $state(before.jogStep_inch ?? 0.01);
   jogFeed = $state(before.jogFeed ?? 1000);
   jogMode = $state<'step' | 'hold'>(before.jogMode ?? 'hold');
 
   keep(): void {
-    const { theme, units, language, machine, jogStep_mm, jogFeed, jogMode } = this;
+    const { theme, units, language, machine, jogStep_mm, jogStep_inch, jogFeed, jogMode } = this;
     try {
-      localStorage.setItem(key, JSON.stringify({ theme, units, language, machine, jogStep_mm, jogFeed, jogMode }));
+      localStorage.setItem(
+        key,
+        JSON.stringify({ theme, units, language, machine, jogStep_mm, jogStep_inch, jogFeed, jogMode }),
+      );
     } catch {
       // A browser that keeps nothing still shows everything.
     }
