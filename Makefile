@@ -7,7 +7,7 @@ PEER ?=
 # How long `make test` runs each fuzz target.
 KERF_FUZZ_SECONDS ?= 20
 
-.PHONY: run serve build test campaign conformance bench bench-stream docs tidy format lint clean
+.PHONY: run serve screens build test campaign conformance bench bench-stream docs tidy format lint clean
 
 # A part of about four minutes, cut by the built-in virtual grblHAL ten times as fast.
 run: build
@@ -76,6 +76,10 @@ bench-stream: build
 docs: build
 	cmake --build --preset release --target vocabulary -j $(JOBS)
 	build/release/tools/vocabulary/vocabulary docs/protocol/tables
+
+# The pictures of the page in docs/screens, taken in a browser.
+screens: build
+	KERF=$(CURDIR)/build/kerf KERF_SCREENS=$(CURDIR)/docs/screens tools/in_web.sh ../tests/browser/run.sh build/screens screens
 
 # The rules of docs/architecture.md, in a second.
 tidy:

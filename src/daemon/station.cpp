@@ -246,7 +246,7 @@ void Station::on(const session::JobStarted& started) {
 }
 
 void Station::on(const session::JobStalled& stalled) {
-  notes_.add(NoteLevel::Warning, stalled.stall.headline);
+  if (job::needs_decision(stalled.stall.cause)) notes_.add(NoteLevel::Warning, stalled.stall.headline);
 }
 
 void Station::on(const session::JobEnded& ended) {

@@ -127,7 +127,10 @@ std::optional<TroubleView> Station::trouble_view() const {
   const session::Session& session = host_->session();
   if (const auto alarm = session.alarm_explanation()) return trouble_of(*alarm);
   const auto& job = session.job();
-  if (job && job->stall) {
+  // A long move and a dwell are no trouble; what the state tells anyway is not told twice.
+  const bool is_stuck =
+      job && job->stall && (job::needs_decision(job->stall->cause) || job->stall->cause == job::StallCause::NotReading);
+  if (is_stuck) {
     return TroubleView{.kind = "Stall",
                        .headline = job->stall->headline,
                        .evidence = job->stall->evidence,
