@@ -20,7 +20,8 @@ export function position(mm: number | undefined, units: Units): string {
 
 export function feed(mm_per_min: number | undefined, units: Units): string {
   if (mm_per_min === undefined || !Number.isFinite(mm_per_min)) return '—';
-  return fixed(toShown(mm_per_min, units), units === 'inch' ? 1 : 0);
+  const shown = toShown(mm_per_min, units);
+  return fixed(shown, units === 'inch' && shown < 100 ? 1 : 0);
 }
 
 export const feedUnit = (units: Units): string => (units === 'inch' ? 'in/min' : 'mm/min');
