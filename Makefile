@@ -7,7 +7,7 @@ PEER ?=
 # How long `make test` runs each fuzz target.
 KERF_FUZZ_SECONDS ?= 20
 
-.PHONY: run serve screens build test campaign conformance bench bench-stream docs tidy format lint clean
+.PHONY: run serve screens build test campaign conformance bench bench-stream bench-daemon docs tidy format lint clean
 
 # A part of about four minutes, cut by the built-in virtual grblHAL ten times as fast.
 run: build
@@ -72,6 +72,10 @@ bench-stream: build
 	build/release/bench/session_cost
 	build/release/bench/stream --kerf build/kerf --floor build/release/bench/least_counter --only $(ONLY)
 
+# What the daemon costs: at rest, and with twenty machines at work on one core (bench/README.md).
+bench-daemon: build
+	KERF=build/kerf python3 -B bench/daemon.py
+
 # The tables of docs/protocol, from the code.
 docs: build
 	cmake --build --preset release --target vocabulary -j $(JOBS)
@@ -79,7 +83,8 @@ docs: build
 
 # The pictures of the page in docs/screens, taken in a browser.
 screens: build
-	KERF=$(CURDIR)/build/kerf KERF_SCREENS=$(CURDIR)/docs/screens tools/in_web.sh ../tests/browser/run.sh build/screens screens
+	KERF=$(CURDIR)/build/kerf KERF_SCREENS=$(CURDIR)/docs/screens \
+	  tools/in_web.sh ../tests/browser/run.sh build/screens screens
 
 # The rules of docs/architecture.md, in a second.
 tidy:
