@@ -7,7 +7,8 @@ PEER ?=
 # How long `make test` runs each fuzz target.
 KERF_FUZZ_SECONDS ?= 20
 
-.PHONY: run serve screens build test campaign conformance bench bench-stream bench-daemon docs tidy format lint clean
+.PHONY: run serve screens build test campaign conformance bench bench-analysis bench-stream bench-daemon docs \
+  tidy format lint clean
 
 # A part of about four minutes, cut by the built-in virtual grblHAL ten times as fast.
 run: build
@@ -63,6 +64,15 @@ ifeq ($(PEER),)
 else
 	unshare --map-root-user --net sh -c 'ip link set lo up && exec $(BENCH) --peer $(PEER)'
 endif
+
+# How fast programs of MEGABYTES are opened, understood and drawn, on one thread (bench/README.md). They are held in
+# memory whole.
+MEGABYTES ?= 10,100
+ROUNDS ?= 3
+bench-analysis: build
+	cmake --build --preset release --target analysis --target toolpath -j $(JOBS)
+	build/release/bench/analysis --rounds $(ROUNDS) --megabytes $(MEGABYTES)
+	build/release/bench/toolpath
 
 # How fast Kerf streams, beside the least program that can (bench/README.md). ONLY=speed, wire, hold or memory for
 # a part.

@@ -3,12 +3,14 @@
 //   analysis [--rounds N] [--megabytes N,N,...] [--personality KEY]
 //
 // For each shape of program and each size: a scan for line ends with memchr, the least tokeniser (letters and numbers
-// into a sum), Kerf's own loading (checks, index, content hash), its full interpretation, and its planner. Every figure
-// is the median of N rounds of processor time on one thread; all stages take their turn within a round, so that a busy
-// machine disturbs them alike, and only ratios say something.
+// into a sum), Kerf's own loading (checks, index, content hash), its full interpretation, its planner, and the whole
+// check that `kerf run` makes before it begins. Every figure is the median of N rounds of processor time on one thread;
+// all stages take their turn within a round, so that a busy machine disturbs them alike, and only ratios say something.
+// The memory of loading and check is what they hold on the heap, looked at after each megabyte.
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -17,10 +19,11 @@
 #include <string_view>
 #include <vector>
 
-#include "common/gcode/interpreter.hpp"
-#include "common/gcode/line_reader.hpp"
+#include <malloc.h>
+
 #include "measure.hpp"
 #include "programs.hpp"
+#include "rehearsal/check.hpp"
 #include "sender/job/program.hpp"
 #include "stages.hpp"
 
@@ -64,6 +67,34 @@ std::size_t load(std::string_view text) {
   return program ? (*program)->line_count() : 0;
 }
 
+std::size_t heap_bytes() {
+  const auto counts = ::mallinfo2();
+  return counts.uordblks + counts.hblkhd;
+}
+
+struct Checked {
+  double seconds = 0;
+  std::uint64_t errors = 0;
+  /// What program and check held together, at most.
+  std::size_t most_bytes = 0;
+};
+
+/// The check alone is timed, not the loading before it.
+Checked check(std::string_view text, const simulation::CaseMachine& machine) {
+  Checked checked;
+  const std::size_t before = heap_bytes();
+  const auto program = job::Program::load("bench.nc", nullptr, text);
+  if (!program) return checked;
+  checked.seconds = time([&] {
+                      rehearsal::Checker checker(**program, rehearsal::check_machine_of(machine));
+                      while (checker.read_on(kMegabyte)) {
+                        checked.most_bytes = std::max(checked.most_bytes, heap_bytes() - before);
+                      }
+                      checked.errors = checker.finish().errors;
+                    }).cpu_s;
+  return checked;
+}
+
 /// A program of about `bytes`: the shape's head, and its body as often as it takes.
 BenchProgram stretched(const BenchProgram& shape, std::size_t bytes) {
   BenchProgram program = shape;
@@ -91,6 +122,8 @@ void measure(const BenchProgram& program, const Options& options) {
   Stage index{"load and index"};
   Stage read{"full interpretation"};
   Stage planned{"planner"};
+  Stage whole{"whole check"};
+  Checked checked;
   double sink = 0;
   std::size_t blocks = 0;
   for (int round = 0; round < options.rounds; ++round) {
@@ -99,15 +132,21 @@ void measure(const BenchProgram& program, const Options& options) {
     index.seconds.push_back(time([&] { sink += static_cast<double>(load(text)); }).cpu_s);
     read.seconds.push_back(time([&] { sink += static_cast<double>(parse(program, options.firmware)); }).cpu_s);
     planned.seconds.push_back(time([&] { blocks = plan_whole(program, machine); }).cpu_s);
+    checked = check(text, machine);
+    whole.seconds.push_back(checked.seconds);
   }
   const double scan_s = middle_of(scan.seconds).median;
-  for (const Stage* const stage : {&scan, &tokens, &index, &read, &planned}) {
+  for (const Stage* const stage : {&scan, &tokens, &index, &read, &planned, &whole}) {
     const double seconds = middle_of(stage->seconds).median;
     std::printf("%-10.*s %6.0f MB  %-20.*s %8.3f s  %6.2f GB/s  %7.2f M lines/s  %6.2f of the scan",
                 static_cast<int>(program.name.size()), program.name.data(),
                 static_cast<double>(text.size()) / kMegabyte, static_cast<int>(stage->name.size()), stage->name.data(),
                 seconds, static_cast<double>(text.size()) / seconds / 1e9, lines / seconds / 1e6, scan_s / seconds);
     if (stage == &planned) std::printf("  %.2f M blocks/s", static_cast<double>(blocks) / seconds / 1e6);
+    if (stage == &whole) {
+      std::printf("  %.2f bytes of memory a line, %llu errors found", static_cast<double>(checked.most_bytes) / lines,
+                  static_cast<unsigned long long>(checked.errors));
+    }
     std::printf("\n");
   }
   if (sink < 0) std::printf("impossible\n");
