@@ -27,7 +27,7 @@ void Job::on_snapshot(Instant now, const machine::Snapshot& snapshot, std::strin
   if (ended()) return;
   moving_ = is_moving(snapshot);
   in_hold_ = snapshot.state == MachineState::Hold;
-  if (snapshot.overrides) meter_.set_feed_override(now, snapshot.overrides->feed);
+  if (snapshot.overrides) meter_.set_overrides(now, snapshot.overrides->feed, snapshot.overrides->rapid);
   update_progress(now);
   if (state_.phase == JobPhase::Stopping) {
     stop_.on_snapshot(now, snapshot);

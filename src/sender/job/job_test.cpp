@@ -330,11 +330,42 @@ TEST(ProgressMeter, FollowsTheRehearsalWhenThePlannerHasSwallowedTheProgram) {
   meter.set_held(Instant{10s}, true);
   meter.set_held(Instant{20s}, false);
   EXPECT_DOUBLE_EQ(*meter.at(Instant{20s}).remaining_s, 30) << "a hold is not machining";
-  meter.set_feed_override(Instant{20s}, 50);
+  meter.set_overrides(Instant{20s}, 50, 100);
   EXPECT_DOUBLE_EQ(*meter.at(Instant{20s}).remaining_s, 60);
   EXPECT_DOUBLE_EQ(*meter.at(Instant{40s}).remaining_s, 40);
   meter.complete();
   EXPECT_DOUBLE_EQ(meter.at(Instant{90s}).percent, 100);
+}
+
+TEST(ProgressMeter, ScalesCuttingByTheFeedOverrideAndRapidsByTheirOwn) {
+  ProgressMeter meter;
+  meter.start(Instant{}, 2, 20, std::make_shared<Timeline>(Timeline{{20, 40}, 100, 1.0, 0.25}));
+  meter.acknowledge(2, 20);
+  meter.set_overrides(Instant{}, 50, 100);
+  EXPECT_DOUBLE_EQ(*meter.at(Instant{}).remaining_s, 70) << "30 s of cutting take 60 s, 10 s of rapids stay";
+  meter.set_overrides(Instant{}, 100, 25);
+  EXPECT_DOUBLE_EQ(*meter.at(Instant{}).remaining_s, 70) << "10 s of rapids take 40 s, 30 s of cutting stay";
+  meter.set_overrides(Instant{}, 0, 0);
+  EXPECT_DOUBLE_EQ(*meter.at(Instant{}).remaining_s, 70) << "no machine goes at nothing";
+  meter.set_overrides(Instant{}, 100, 100);
+  EXPECT_DOUBLE_EQ(*meter.at(Instant{}).remaining_s, 40);
+}
+
+TEST(ProgressMeter, TheRestFollowsThePaceThatTheJobHasKept) {
+  ProgressMeter slow;
+  slow.start(Instant{}, 4, 40, std::make_shared<Timeline>(Timeline{{100, 200, 300, 400}, 1}));
+  slow.acknowledge(1, 10);
+  EXPECT_DOUBLE_EQ(slow.at(Instant{100s}).remaining_s.value(), 300) << "as rehearsed";
+  EXPECT_DOUBLE_EQ(slow.at(Instant{230s}).remaining_s.value(), 600) << "100 s took 230 s: half as fast, nearly";
+  slow.set_held(Instant{230s}, true);
+  EXPECT_DOUBLE_EQ(slow.at(Instant{900s}).remaining_s.value(), 600) << "a hold says nothing about the pace";
+  slow.set_held(Instant{900s}, false);
+  EXPECT_DOUBLE_EQ(slow.at(Instant{900s}).remaining_s.value(), 600);
+
+  ProgressMeter fast;
+  fast.start(Instant{}, 4, 40, std::make_shared<Timeline>(Timeline{{100, 200, 300, 400}, 1}));
+  fast.acknowledge(3, 30);
+  EXPECT_DOUBLE_EQ(fast.at(Instant{85s}).remaining_s.value(), 100) << "200 s took 85 s: twice as fast";
 }
 
 TEST(ProgressMeter, IsNeverAheadOfTheAcknowledgedLinesNorMoreThanAPlannerBehind) {

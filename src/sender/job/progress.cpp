@@ -8,6 +8,9 @@ namespace {
 
 /// Below this share of the file the pace says nothing yet.
 constexpr double kLeastPercentForPace = 1.0;
+/// The rehearsal is trusted as if the job had kept to it for so long before it began: what the planner holds at the
+/// start, and lines that come in bursts, say little about the rest.
+constexpr double kTrustInRehearsal_s = 30.0;
 
 }  // namespace
 
@@ -20,14 +23,28 @@ void ProgressMeter::start(Instant now, std::uint32_t lines_total, std::uint64_t 
   started_at_ = counted_at_ = now;
 }
 
+double ProgressMeter::due_s_since_count(Instant at) const {
+  if (!timeline_ || held_since_) return 0;
+  return base::to_seconds(at - counted_at_) * timeline_->speed * override_factor_;
+}
+
 double ProgressMeter::machining_s_at(Instant at) const {
   if (!timeline_) return 0;
-  const double since_s = held_since_ ? 0.0 : base::to_seconds(at - counted_at_);
   // The tool is neither past what the controller has taken nor further behind it than its planner is long.
   const std::uint32_t taken = progress_.lines_acknowledged;
   const std::uint32_t surely_done = taken - std::min(taken, timeline_->lines_ahead_at_most);
-  return std::clamp(machining_s_ + since_s * timeline_->speed * override_factor_, timeline_->end_of(surely_done),
-                    timeline_->end_of(taken));
+  return std::clamp(machining_s_ + due_s_since_count(at), timeline_->end_of(surely_done), timeline_->end_of(taken));
+}
+
+double ProgressMeter::pace_at(Instant at) const {
+  return (machining_s_at(at) + kTrustInRehearsal_s) / (due_s_ + due_s_since_count(at) + kTrustInRehearsal_s);
+}
+
+void ProgressMeter::count_until(Instant now) {
+  const double machining_s = machining_s_at(now);
+  due_s_ += due_s_since_count(now);
+  machining_s_ = machining_s;
+  counted_at_ = now;
 }
 
 void ProgressMeter::acknowledge(std::uint32_t file_line, std::uint64_t bytes) {
@@ -38,8 +55,7 @@ void ProgressMeter::acknowledge(std::uint32_t file_line, std::uint64_t bytes) {
 
 void ProgressMeter::set_held(Instant now, bool held) {
   if (held == held_since_.has_value()) return;
-  machining_s_ = machining_s_at(now);
-  counted_at_ = now;
+  count_until(now);
   if (held) {
     held_since_ = now;
     return;
@@ -48,11 +64,12 @@ void ProgressMeter::set_held(Instant now, bool held) {
   held_since_.reset();
 }
 
-void ProgressMeter::set_feed_override(Instant now, int percent) {
-  const double factor = percent / 100.0;
-  if (factor == override_factor_ || percent <= 0) return;
-  machining_s_ = machining_s_at(now);
-  counted_at_ = now;
+void ProgressMeter::set_overrides(Instant now, int feed_percent, int rapid_percent) {
+  if (feed_percent <= 0 || rapid_percent <= 0) return;
+  const double rapid_share = timeline_ ? timeline_->rapid_share : 0.0;
+  const double factor = 1.0 / ((1.0 - rapid_share) * 100.0 / feed_percent + rapid_share * 100.0 / rapid_percent);
+  if (factor == override_factor_) return;
+  count_until(now);
   override_factor_ = factor;
 }
 
@@ -91,7 +108,7 @@ void ProgressMeter::estimate(Progress& progress, Instant at) const {
     const auto line = static_cast<std::uint32_t>(next - timeline_->end_s.begin()) + 1;
     progress.cutting_line = std::min(line, progress.lines_total);
     progress.percent = 100.0 * done_s / total_s;
-    progress.remaining_s = (total_s - done_s) / (timeline_->speed * override_factor_);
+    progress.remaining_s = (total_s - done_s) / (timeline_->speed * override_factor_ * pace_at(at));
     return;
   }
   if (progress.bytes_total > 0) {

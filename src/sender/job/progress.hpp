@@ -31,8 +31,9 @@ struct Progress {
   double elapsed_s = 0;
   /// Time held, stopped at M0 or at a door, already in `elapsed_s`.
   double held_s = 0;
-  /// What is left of the rehearsed time at the present overrides. Without a rehearsal: what is left if the rest of the
-  /// file takes as long a byte as the part before. Empty until there is something to go by.
+  /// What is left of the rehearsed time at the present overrides, and at the pace that the job has kept so far. Without
+  /// a rehearsal: what is left if the rest of the file takes as long a byte as the part before. Empty until there is
+  /// something to go by.
   std::optional<double> remaining_s;
 
   /// The line to show to people: the one being cut if that is known, else the one taken last.
@@ -52,8 +53,9 @@ class ProgressMeter {
   /// Everything up to and including `file_line`, which ends at `bytes`, is dealt with.
   void acknowledge(std::uint32_t file_line, std::uint64_t bytes);
   void set_held(Instant now, bool held);
-  /// The feed override, which the rehearsal did not know. Percent, above 0.
-  void set_feed_override(Instant now, int percent);
+  /// The overrides of feed and rapids, which the rehearsal did not know. Percent; nothing changes unless both are
+  /// above 0.
+  void set_overrides(Instant now, int feed_percent, int rapid_percent);
   void set_executing(const ExecutingLines& lines) { progress_.executing = lines; }
   /// The whole file is dealt with.
   void complete();
@@ -62,7 +64,11 @@ class ProgressMeter {
   void stop(Instant now);
 
  private:
+  /// Rehearsed seconds that should have passed since `counted_at_`.
+  [[nodiscard]] double due_s_since_count(Instant at) const;
   [[nodiscard]] double machining_s_at(Instant at) const;
+  [[nodiscard]] double pace_at(Instant at) const;
+  void count_until(Instant now);
   void estimate(Progress& progress, Instant at) const;
 
   Progress progress_;
@@ -71,6 +77,8 @@ class ProgressMeter {
   double override_factor_ = 1.0;
   /// Rehearsed seconds that had passed at `counted_at_`.
   double machining_s_ = 0;
+  /// Rehearsed seconds that should have passed by then, had the machine kept to the rehearsal.
+  double due_s_ = 0;
   Instant counted_at_{};
   Instant started_at_{};
   std::optional<Instant> held_since_;

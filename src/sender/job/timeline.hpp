@@ -15,6 +15,8 @@ struct Timeline {
   std::uint32_t lines_ahead_at_most = 0;
   /// Seconds of machining that pass in one second; a virtual machine may be faster than 1.
   double speed = 1.0;
+  /// Of the length of the job, what is spent in rapid motion, which follows an override of its own. 0 to 1.
+  double rapid_share = 0.0;
 
   [[nodiscard]] double total_s() const { return end_s.empty() ? 0.0 : end_s.back(); }
   /// End of line `number` (from 1); 0 for line 0, and the end of the job beyond the last line.
