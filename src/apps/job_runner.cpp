@@ -142,7 +142,7 @@ void JobRunner::follow(const AskOperator& question) {
   view_.told(question.told);
   if (!can_ask_) return fail("There is no terminal to ask on: say --yes.", ExitStatus::Usage);
   awaits_answer_ = true;
-  view_.asked(job::JobState{}, question.question);
+  view_.asked(job::JobState{}, question.question + " [y/N] ");
 }
 
 void JobRunner::follow(const BeginJob& begin) {

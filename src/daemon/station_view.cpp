@@ -106,9 +106,11 @@ CanView Station::can_view() const {
                                  : sentence_of(session.why_no_job(now));
   can.resume = session.can_resume() ? "" : session::sentence_of(session::Refused::NotAtRest);
   can.jog = line("$J=G91X1F1");
-  if (can.jog.empty() && session.snapshot().state == vocabulary::MachineState::Alarm) {
-    can.jog = session::sentence_of(session::Refused::MachineInAlarm);
-  }
+  using vocabulary::MachineState;
+  const MachineState state = session.snapshot().state;
+  // The session sends a jog in every state, and the controller says what is wrong with it.
+  if (can.jog.empty() && state == MachineState::Alarm) can.jog = session::sentence_of(session::Refused::MachineInAlarm);
+  if (can.jog.empty() && state == MachineState::Door) can.jog = "The safety door is open: close it first.";
   can.home = line("$H");
   if (can.home.empty() && limits_.homing_enabled == false)
     can.home = "Homing is switched off in the machine's settings.";
@@ -128,8 +130,8 @@ std::optional<TroubleView> Station::trouble_view() const {
   if (const auto alarm = session.alarm_explanation()) return trouble_of(*alarm);
   const auto& job = session.job();
   // A long move and a dwell are no trouble; what the state tells anyway is not told twice.
-  const bool is_stuck =
-      job && job->stall && (job::needs_decision(job->stall->cause) || job->stall->cause == job::StallCause::NotReading);
+  const bool is_stuck = job && job->stall && !job::is_final(job->phase) &&
+                        (job::needs_decision(job->stall->cause) || job->stall->cause == job::StallCause::NotReading);
   if (is_stuck) {
     return TroubleView{.kind = "Stall",
                        .headline = job->stall->headline,

@@ -85,7 +85,7 @@ class ResumePreparation final : public JobPreparation {
           .told = {.lines = {"Job and machine fit; it can go on from line " + std::to_string(made.from_line) + ".",
                              "First the machine is homed, so that its position is certain. It moves now: Z goes up "
                              "before all else. Is the way to the switches free?"}},
-          .question = "Home now? [y/N] "};
+          .question = "Home now?"};
     }
     homing_.begin(at, now);
     return get_ready(at, now, session::Command{session::Home{}});
@@ -169,7 +169,7 @@ class ResumePreparation final : public JobPreparation {
     }
     if (!may_run_ && !wish_.says_yes) {
       asked_ = Question::Run;
-      return AskOperator{.told = std::move(told), .question = "Is everything as these steps say? Go on? [y/N] "};
+      return AskOperator{.told = std::move(told), .question = "Is everything as these steps say? Go on?"};
     }
     return get_ready(at, session.snapshot(), begin(may_run_ ? Told{} : std::move(told), *made));
   }
