@@ -103,6 +103,8 @@ BANNED_WORDS = r"manager|helper|util|utils|utility|utilities|impl"
 UNFINISHED = "|".join(["TO" + "DO", "FIX" + "ME", "XX" + "X", "HA" + "CK"])
 LONG_FILE = 500
 LONG_LINE = 120
+# Not spelt out, because this file is looked at too.
+CONFLICT = ("<" * 7 + " ", ">" * 7 + " ", "|" * 7 + " ")
 
 
 def blank_literals(text: str) -> str:
@@ -254,6 +256,8 @@ def check_form(file: SourceFile) -> Iterator[Finding]:
             yield Finding(number, "form", "replace the tab by blanks")
         if line != line.rstrip() and not file.name.endswith(".talk"):
             yield Finding(number, "form", "remove the blanks (or carriage return) at the end of the line")
+        if line.startswith(CONFLICT):
+            yield Finding(number, "form", "a merge was left half done: settle it")
         if counts_columns and len(line) > LONG_LINE:
             yield Finding(number, "form", f"{len(line)} columns: break the line before column {LONG_LINE}")
         if file.name.endswith(".nc") and not line.isascii():

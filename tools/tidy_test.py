@@ -141,6 +141,7 @@ class TidyTest(unittest.TestCase):
         self.refuses(path, "int a; \n", "1: form: end of the line")
         self.refuses(path, "int a;\r\n", "1: form: end of the line")
         self.refuses(path, "int a;\nint b;", "2: form: newline")
+        self.refuses(path, "int a;\n" + "<" * 7 + " HEAD\nint b;\n", "2: form: merge")
         self.refuses("examples/x.nc", "(d\u00e9j\u00e0)\n", "1: form: ASCII")
 
     def test_length(self) -> None:

@@ -32,6 +32,19 @@ std::vector<daemon::MachineRow> virtual_machines() {
   return machines;
 }
 
+/// What people would call it: "ttyUSB0", "Virtual grblHAL", "192.168.1.20:23".
+std::string name_of(const std::string& url) {
+  const auto address = io::parse_machine_url(url);
+  if (!address) return url;
+  if (const auto* inside = std::get_if<io::VirtualAddress>(&*address)) {
+    return fmt::format("Virtual {}", inside->personality->dialect().name);
+  }
+  const std::string full = io::to_string(*address);
+  const std::string place = full.substr(full.find("//") + 2);
+  const bool is_path = place.starts_with('/');
+  return place.substr(is_path ? place.rfind('/') + 1 : 0, place.find('?') - (is_path ? place.rfind('/') + 1 : 0));
+}
+
 constexpr Duration kFarewell = std::chrono::milliseconds(200);
 
 /// Tells systemd that the loop turns, where it wants to know.
@@ -80,7 +93,7 @@ ExitStatus serve(const ServeOptions& options) {
   }
   // Also for virtual machines: whoever tries a resume there learns how it works.
   wanted.recording.journal = {.keeps = true, .folder = wanted.state_folder};
-  for (const std::string& url : options.machines) wanted.machines.push_back({.name = url, .url = url});
+  for (const std::string& url : options.machines) wanted.machines.push_back({.name = name_of(url), .url = url});
   if (wanted.machines.empty()) wanted.machines = virtual_machines();
 
   io::EventLoop loop;

@@ -54,7 +54,7 @@ std::expected<std::string, std::string> MachinePark::open(const std::string& id,
   }
   stations_[id] = std::make_unique<Station>(
       services_, row, *url,
-      Station::Callbacks{.changed = [this, id] { on_changed(id); }, .traffic = [this, id] { callbacks_.traffic(id); }});
+      Station::Callbacks{.changed = [this, id] { on_changed(id); }, .traffic = [this, id] { on_traffic(id); }});
   on_changed(id);
   return id;
 }
@@ -114,6 +114,11 @@ void MachinePark::on_changed(const std::string& id) {
   schedule();
 }
 
+void MachinePark::on_traffic(const std::string& id) {
+  has_traffic_.insert(id);
+  schedule();
+}
+
 void MachinePark::on_programs_changed() {
   programs_are_stale_ = true;
   schedule();
@@ -134,6 +139,7 @@ void MachinePark::publish() {
   if (std::exchange(programs_are_stale_, false)) feed_.set("programs", io::to_json(services_.library->programs()));
   const Frame patch = feed_.publish(clock_s());
   if (patch != nullptr) callbacks_.published(patch);
+  for (const std::string& id : std::exchange(has_traffic_, {})) callbacks_.traffic(id);
 }
 
 const StateFeed& MachinePark::feed() {

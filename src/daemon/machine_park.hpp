@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,7 @@ class MachinePark {
   struct Callbacks {
     /// A patch is there for everybody.
     std::function<void(const Frame&)> published;
-    /// This machine said or heard something.
+    /// Lines went to or from this machine since the last time.
     std::function<void(const std::string& machine)> traffic;
   };
 
@@ -52,6 +53,7 @@ class MachinePark {
   std::expected<std::string, std::string> open(const std::string& id, const MachineRow& row);
   [[nodiscard]] std::string new_id(const std::string& name) const;
   void on_changed(const std::string& id);
+  void on_traffic(const std::string& id);
   void schedule();
   void publish();
 
@@ -61,6 +63,7 @@ class MachinePark {
   StateFeed feed_;
   std::map<std::string, bool> is_fixed_;
   std::map<std::string, bool> is_stale_;
+  std::set<std::string> has_traffic_;
   bool programs_are_stale_ = true;
   bool is_watched_ = false;
   bool is_scheduled_ = false;

@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import random
 import re
 import signal
 import socket
@@ -13,7 +14,7 @@ from daemon import Daemon, Live
 from kerf_program import DONE, LiveTest, USAGE, VirtualMachine, example, kerf
 
 FAST = "virtual:grblhal?speed=60"
-GRBLHAL, RABBIT = "virtual-grblhal-speed-60", "virtual-rabbit-speed-60"
+GRBLHAL, RABBIT = "virtual-grblhal", "virtual-rabbit-grbl"
 
 
 def zigzag(rows):
@@ -137,7 +138,7 @@ class Jobs(LiveTest):
 
     def test_a_killed_daemon_offers_the_job_and_nothing_moves(self):
         with tempfile.TemporaryDirectory() as folder, VirtualMachine("grblhal", speed="60") as controller:
-            machine = "tcp-127-0-0-1-" + str(controller.port)
+            machine = "127-0-0-1-" + str(controller.port)
             with Daemon("-m", controller.url, folder=folder) as daemon:
                 daemon.wait_until_ready(machine)
                 program = daemon.upload("zigzag.nc", zigzag(600))
@@ -167,7 +168,7 @@ class Jobs(LiveTest):
 
     def test_ended_by_a_signal_it_holds_the_machine(self):
         with VirtualMachine("grblhal", speed="1") as controller:
-            machine = "tcp-127-0-0-1-" + str(controller.port)
+            machine = "127-0-0-1-" + str(controller.port)
             with Daemon("-m", controller.url) as daemon:
                 daemon.wait_until_ready(machine)
                 program = daemon.upload("zigzag.nc", zigzag(50))
@@ -260,6 +261,71 @@ class HeldJogs(LiveTest):
             self.assertEqual(answer["reason"], "JogHeldElsewhere")
             self.assertEqual(other.ask(type="command", machine=machine, command="Stop")["outcome"], "Accepted")
             daemon.wait_for_machine(machine, lambda view: is_idle(view) and "jog" not in view, what="standing still")
+
+
+def by_chance(dice, schema, schemas, depth=0):
+    """A value that the schema allows, or, now and then, any other."""
+    if dice.random() < 0.15 or depth > 4:
+        return dice.choice([None, True, -1, 1e308, "", "x" * 300, "\x00\u2028", [], {}, [[[]]], {"a": {"b": 1}}])
+    if "$ref" in schema:
+        return by_chance(dice, schemas[schema["$ref"].rsplit("/", 1)[1]], schemas, depth + 1)
+    for several in ("allOf", "oneOf"):
+        if several in schema:
+            return by_chance(dice, dice.choice(schema[several]), schemas, depth + 1)
+    if "enum" in schema:
+        return dice.choice(schema["enum"])
+    kind = schema.get("type")
+    if kind == "object":
+        members = {name: by_chance(dice, one, schemas, depth + 1)
+                   for name, one in schema.get("properties", {}).items() if dice.random() < 0.8}
+        if "additionalProperties" in schema and isinstance(schema["additionalProperties"], dict):
+            members[dice.choice(["X", "Y", "Z", "Q", ""])] = by_chance(
+                dice, schema["additionalProperties"], schemas, depth + 1)
+        return members
+    if kind == "array":
+        return [by_chance(dice, schema["items"], schemas, depth + 1) for _ in range(dice.randrange(3))]
+    texts = ["", "G0 X1", "$X", "part.nc", "XY", "G54", "virtual:grbl", "%2e%2e/", "\U0001F600"]
+    return {"boolean": dice.random() < 0.5, "integer": dice.randrange(-5, 200), "number": dice.uniform(-100, 100),
+            "string": dice.choice(texts)}[kind]
+
+
+class Document(LiveTest):
+    def test_requests_by_chance_from_the_apis_own_document(self):
+        """In check mode nothing moves, whatever is asked."""
+        dice = random.Random(7)
+        with Daemon("-m", FAST, "--program", example("facing.nc")) as daemon:
+            daemon.wait_until_ready(GRBLHAL)
+            daemon.command(GRBLHAL, "SendLine", text="$C")
+            daemon.wait_for_machine(GRBLHAL, lambda view: view["snapshot"]["state"] == "Check", what="check mode")
+            document = daemon.get("/openapi.json")
+            schemas = document["components"]["schemas"]
+            titles = [one["title"] for one in schemas["Command"]["oneOf"]]
+            # What leaves check mode would let things move.
+            kept = [title for title in titles if title not in ("SoftReset", "Abort", "Stop", "Disconnect", "SendLine")]
+            statuses = set()
+            for _ in range(1500):
+                path = dice.choice(list(document["paths"]))
+                method = dice.choice(list(document["paths"][path])).upper()
+                address = path.replace("{machine}", dice.choice([GRBLHAL, "nobody"]))
+                programs = [*daemon.get("/state")["state"]["programs"], "0123"]
+                address = address.replace("{program}", dice.choice(programs))
+                body = None
+                if path.endswith("/commands"):
+                    title = dice.choice(kept)
+                    schema = next(one for one in schemas["Command"]["oneOf"] if one["title"] == title)
+                    members = by_chance(dice, schema, schemas)
+                    body = json.dumps({"command": title, **(members if isinstance(members, dict) else {"x": members})})
+                elif method == "POST" and path.endswith("/machines"):
+                    body = json.dumps(by_chance(dice, schemas["MachineToAdd"], schemas))
+                elif method == "DELETE" and dice.random() < 0.9:
+                    continue
+                elif path.endswith("/ports"):
+                    continue  # it listens to the network for a while
+                status = daemon.request(method, address, body)[0]
+                statuses.add(status)
+                self.assertLess(status, 500, (method, address, body))
+            self.assertLess({200, 400, 404}, statuses | {409})
+            self.assertEqual(daemon.machine(GRBLHAL)["snapshot"]["machine_position_mm"], [0, 0, 0])
 
 
 class Refusals(LiveTest):

@@ -9,7 +9,7 @@ import unittest
 from daemon import Daemon, Live
 from kerf_program import LiveTest
 
-MACHINE = "virtual-grblhal-speed-30"
+MACHINE = "virtual-grblhal"
 URL = "virtual:grblhal?speed=30"
 
 
