@@ -58,7 +58,8 @@ struct JobRow {
   std::string program{};
   std::string started_at{};
   std::optional<std::string> ended_at{};
-  job::JobOutcome outcome{};
+  /// Not while it runs.
+  std::optional<job::JobOutcome> outcome{};
   std::uint32_t lines_acknowledged = 0;
   std::uint32_t lines_total = 0;
   std::string reason{};
@@ -286,14 +287,15 @@ void Api::get_jobs(const ApiCall& call, const Answer& answer) {
         rows.push_back({.job = job.number,
                         .program = history.begun.program,
                         .started_at = io::to_string(job.began),
-                        .outcome = history.outcome(),
                         .lines_acknowledged = last == nullptr ? 0 : last->line_acknowledged,
                         .lines_total = history.begun.lines,
                         .reason = history.closed ? history.closed->state.reason : "",
                         .resumable = is_open,
                         .program_id = history.begun.origin.file_hash.empty() ? history.begun.hash
                                                                              : history.begun.origin.file_hash});
-        if (!job.is_running) rows.back().ended_at = io::to_string(job.last);
+        if (job.is_running) continue;
+        rows.back().outcome = history.outcome();
+        rows.back().ended_at = io::to_string(job.last);
       }
     }
     return [this, answer, rows = std::move(rows)]() mutable {

@@ -269,7 +269,8 @@ export interface JournalEntry {
   started_at: string;
   ended_at?: string;
   /** Complete, CutOff, … */
-  outcome: string;
+  /** Not while it runs. */
+  outcome?: string;
   lines_acknowledged: number;
   lines_total: number;
   reason?: string;
