@@ -94,7 +94,7 @@ docs: build
 # The pictures of the page in docs/screens, taken in a browser.
 screens: build
 	KERF=$(CURDIR)/build/kerf KERF_SCREENS=$(CURDIR)/docs/screens \
-	  tools/in_web.sh ../tests/browser/run.sh build/screens screens
+	  tools/in_web.sh ../tests/browser/run.sh ../build/screens screens
 
 # The rules of docs/architecture.md, in a second.
 tidy:
